@@ -1,0 +1,41 @@
+// Everything the march is told, in rows of 16 bytes: std140 on the GPU, memcpy on the CPU. Index space here is voxels
+// relative to the corner of the brick grid, so that no world coordinate enters a shader.
+
+NPH_CONST int kMaxLights = 8;
+NPH_CONST int kLightSun = 0;
+NPH_CONST int kLightPoint = 1;
+
+struct LightParameters {
+  vec4 direction;       // sun: unit vector to the light, world axes. w: kind
+  vec4 directionIndex;  // sun: the same in voxels per world unit. Point: its place in index space
+  vec4 power;           // sun: irradiance on a plane facing it. Point: intensity
+};
+
+struct MarchParameters {
+  // Picture position (x, y) in pixels from the top left corner → a ray: the origin lies on a plane in front of the
+  // medium, the direction has length 1 along the camera's axis. Each is corner + x · dx + y · dy.
+  vec4 originCorner;  // index space. w: distance from the camera to that plane, world units along the axis
+  vec4 originDx;
+  vec4 originDy;
+  vec4 directionCorner;  // voxels per world unit along the axis
+  vec4 directionDx;
+  vec4 directionDy;
+  vec4 rayCorner;  // the same direction in world axes and units
+  vec4 rayDx;
+  vec4 rayDy;
+  vec4 worldFromIndexX;  // world displacement of one voxel along x, y, z
+  vec4 worldFromIndexY;
+  vec4 worldFromIndexZ;
+  vec4 indexFromWorldX;  // index displacement of one world unit along x, y, z
+  vec4 indexFromWorldY;
+  vec4 indexFromWorldZ;
+  vec4 boxMin;       // support of the medium, index space
+  vec4 boxMax;
+  vec4 sigmaT;       // per unit density per world unit. w: g
+  vec4 sigmaS;       // w: step, voxels
+  vec4 octaves;      // a, b, c. w: shadow step, voxels
+  vec4 environment;  // uniform radiance. w: smallest transmittance worth following
+  ivec4 counts;      // x: lights. y: octaves beyond the first. w: 1 where steps start at random, 0 midway
+  ivec4 brickCount;  // bricks along each axis. w: seed
+  LightParameters lights[kMaxLights];
+};

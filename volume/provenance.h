@@ -1,0 +1,27 @@
+// What a baked file says of its own making. No OpenVDB: the recipe side fills it, volume writes it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace nephele {
+
+/// Becomes file metadata: creator, up_axis, recipe_hash, seed, frame, and the medium where the recipe gives one
+/// (sigma_s, sigma_a per unit density per world unit, g).
+struct Provenance {
+  char upAxis = 'z';
+  std::string recipeHash;   // hex; equal where the asset would bake to the same content by the same version
+  int64_t seed = 0;
+  std::optional<int> frame;
+  bool hasMedium = false;
+  std::array<double, 3> sigmaS{};
+  std::array<double, 3> sigmaA{};
+  double g = 0.0;
+};
+
+/// "Nephele 0.1.0"; never begins with "Houdini" (Blender would turn the file).
+std::string creatorName();
+
+}  // namespace nephele
