@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/range.h"
 
 namespace nephele::yaml {
 
@@ -47,17 +47,6 @@ NodePtr parse(std::string_view text, const std::string& fileName);
 /// Reads and parses a file. A file that is missing or cannot be read is an InputError that names it.
 NodePtr load(const std::string& path);
 
-/// The numbers that a key accepts. Ends are included unless open.
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool lowOpen = false;
-  bool highOpen = false;
-};
-inline constexpr Range kAny{};
-inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), true, false};
-inline constexpr Range kNonNegative{0.0, std::numeric_limits<double>::infinity(), false, false};
-inline constexpr Range kUnit{0.0, 1.0, false, false};
 /// "greater than 0", "0 to 1", "at least 0": for sentences and docs; empty for any number.
 std::string describe(const Range& range);
 bool contains(const Range& range, double value);

@@ -38,7 +38,7 @@ struct Octaves {
 
 /// Parallel light; irradiance on a plane that faces it. toLight is of unit length (files may give any length > 0).
 struct Sun {
-  glm::dvec3 toLight{0.30319489, 0.80851970, 0.50532481};
+  glm::dvec3 toLight{0.30304576336566325, 0.80812203564176865, 0.50507627227610541};
   Rgb irradiance{3.1416, 3.1416, 3.1416};
 };
 

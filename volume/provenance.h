@@ -8,11 +8,11 @@
 
 namespace nephele {
 
-/// Becomes file metadata: creator, up_axis, recipe_hash, seed, frame, and the medium where the recipe gives one
-/// (sigma_s, sigma_a per unit density per world unit, g).
+/// Becomes file metadata: creator, up_axis, recipe_hash, seed, frame, and the medium where the recipe gives
+/// one (sigma_s, sigma_a per unit density per world unit, g).
 struct Provenance {
   char upAxis = 'z';
-  std::string recipeHash;   // hex; equal where the asset would bake to the same content by the same version
+  std::string recipeHash;  // hex; equal where the asset would bake to the same content by the same version
   int64_t seed = 0;
   std::optional<int> frame;
   bool hasMedium = false;

@@ -1,9 +1,12 @@
-// Reading and writing .vdb files through OpenVDB: whole or not at all, refused early where damaged, with the metadata
-// that VDB-CONVENTIONS.md asks for. Includes OpenVDB: only bake/voxelize, bake/splat and volume may include this.
+// Reading and writing .vdb files through OpenVDB: whole or not at all, refused early where damaged, with the
+// metadata that VDB-CONVENTIONS.md asks for. Includes OpenVDB: only bake/voxelize, bake/splat and volume may
+// include this.
 #pragma once
 
 #include <openvdb/openvdb.h>
 
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,23 +17,36 @@ namespace nephele {
 /// openvdb::initialize(), once; safe from any thread.
 void initializeOpenVdb();
 
-/// An empty FloatGrid: background 0, fog volume, uniform voxels of side `voxelSize` world units, sample (0, 0, 0) at
-/// the world's origin. The only call of FloatGrid::create() in the project (it costs 8 s of compilation a file).
+/// An empty FloatGrid: background 0, fog volume, uniform voxels of side `voxelSize` world units, sample (0,
+/// 0, 0) at the world's origin. The only call of FloatGrid::create() in the project (it costs 8 s of
+/// compilation a file).
 openvdb::FloatGrid::Ptr makeFogGrid(const std::string& name, double voxelSize, bool saveAsHalf);
 
-/// Writes the grids to `path` with Blosc and the active mask, whole or not at all; `provenance` becomes metadata of the
-/// file. Returns the file's size in bytes. Throws WorldError.
+/// Writes the grids to `path` with Blosc and the active mask, whole or not at all; `provenance` becomes
+/// metadata of the file. Returns the file's size in bytes. Throws WorldError.
 uint64_t writeVdb(const std::string& path, const openvdb::GridCPtrVec& grids, const Provenance& provenance);
 
-/// Everything in a file, after checkVdbFile(). Throws InputError or WorldError. Grids come fully loaded.
+/// Everything in a file, after readVdbHeader(). Throws InputError or WorldError. Grids come fully loaded.
 struct VdbContents {
   openvdb::GridPtrVecPtr grids;
   openvdb::MetaMap::Ptr metadata;
 };
 VdbContents readVdb(const std::string& path);
 
-/// Content hash of grids (DESIGN.md, section 1, last paragraph): equal for equal content whatever wrote the file.
-/// The tree must be pruned at tolerance 0; values are hashed as given, so round to half first where half is stored.
+/// Opens a file for `body` to read parts of, without loading on demand, after readVdbHeader() has seen that
+/// it is whole. Throws as readVdb does; what OpenVDB throws inside `body` becomes an InputError that names
+/// the file.
+void withVdbFile(const std::string& path, const std::function<void(openvdb::io::File& file)>& body);
+
+/// Metadata as text: numbers with all their digits, vectors as "[x, y, z]", other types as OpenVDB prints
+/// them.
+std::map<std::string, std::string> metadataAsText(const openvdb::MetaMap& metadata);
+
+/// Content hash of grids (DESIGN.md, section 1, last paragraph): equal for equal content whatever wrote the
+/// file. Empty for value types without a hash (points, strings). In a leaf that has active voxels all 512
+/// values count, since a box sampler reads the inactive ones too; leaves without any and inactive tiles do
+/// not. The same on any number of threads. The tree must be pruned at tolerance 0; values are hashed as
+/// given, so round to half first where half is stored.
 std::string contentHash(const openvdb::GridBase& grid);
 
 }  // namespace nephele

@@ -1,5 +1,5 @@
-// The head of a .vdb file, walked by hand without OpenVDB: is it a .vdb, which grids does it hold, and is all of it
-// there? OpenVDB itself does not notice a file's early end. Depends on base alone.
+// The head of a .vdb file, walked by hand without OpenVDB: is it a .vdb, which grids does it hold, and is all
+// of it there? OpenVDB itself does not notice a file's early end. Depends on base alone.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 namespace nephele {
 
 struct VdbGridEntry {
-  std::string name;      // without the suffix that OpenVDB adds to repeated names
-  std::string type;      // "Tree_float_5_4_3", …
-  bool half = false;     // stored with half precision
-  uint64_t begin = 0;    // byte range in the file
+  std::string name;    // without the suffix that OpenVDB adds to repeated names
+  std::string type;    // "Tree_float_5_4_3", …
+  bool half = false;   // stored with half precision
+  uint64_t begin = 0;  // byte range in the file
   uint64_t end = 0;
 };
 
@@ -24,8 +24,9 @@ struct VdbHeader {
   uint64_t sizeBytes = 0;
 };
 
-/// Reads the header and every grid's place. Throws InputError where the file is missing, is no .vdb, is older than
-/// version 220, or ends before its last grid does (the sentence names both sizes). Reads a few kilobytes.
+/// Reads the header and every grid's place. Throws InputError where the file is missing, is no .vdb, is older
+/// than version 220, or ends before its last grid does (the sentence names both sizes). Reads a few
+/// kilobytes.
 VdbHeader readVdbHeader(const std::string& path);
 
 }  // namespace nephele
