@@ -1,0 +1,41 @@
+// Boxes, and the way from lattice blocks to points that every field has. Depends on field.h alone.
+#include "bake/fields/field.h"
+
+#include <glm/common.hpp>
+
+namespace nephele {
+
+Box nothing() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
+}
+
+Box intersection(const Box& a, const Box& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
+
+Box hull(const Box& a, const Box& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
+}
+
+Box grown(const Box& box, double by) { return {box.low - by, box.high + by}; }
+
+LatticePoints::LatticePoints(const Lattice& lattice) : origin(lattice.origin) {
+  int n = 0;
+  for (int i = 0; i < kBlockEdge; ++i)
+    for (int j = 0; j < kBlockEdge; ++j)
+      for (int k = 0; k < kBlockEdge; ++k, ++n) {
+        x[n] = float(i * lattice.spacing);
+        y[n] = float(j * lattice.spacing);
+        z[n] = float(k * lattice.spacing);
+      }
+}
+
+Points LatticePoints::points() const { return {origin, kBlockPoints, x, y, z}; }
+
+void Field::evaluate(const Lattice& lattice, float* values) const {
+  const LatticePoints block(lattice);
+  evaluate(block.points(), values);
+}
+
+}  // namespace nephele

@@ -1,0 +1,45 @@
+// Gradient noise of many octaves as a building block of fields: values at points and on blocks, bounds, band
+// limit. Depends on field.h, table.h and shared text.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bake/fields/field.h"
+#include "bake/fields/table.h"
+
+namespace nephele {
+
+/// One octave: `weight` times gradient noise of cells of `cellSize` world units.
+struct NoiseOctave {
+  double cellSize = 1.0;
+  float weight = 1.0f;
+  uint32_t seed = 0;
+  int period = 0;  // cells; 0: none
+};
+
+/// Weight of a noise whose cells measure `cellVoxels` voxels: 1 from 4 voxels on, 0 below 2, linear between.
+/// A grid cannot hold a wave shorter than two voxels; it would alias.
+double bandLimit(double cellVoxels);
+
+/// Largest slope of perlinNoise per cell, in any direction: 3.75 · kPerlinScale. The supremum over positions
+/// and the 12 gradients of each corner lies at a cell's centre, where fade' = 1.875 meets differences of 2.
+inline constexpr double kPerlinSlope = 3.75 * 0.96487842532;
+/// The same along (1, 1, 1) for a displacement of one cell on each axis: 5.396 · kPerlinScale
+/// (supremum 5.39573).
+inline constexpr double kPerlinCornerSlope = 5.396 * 0.96487842532;
+
+/// Adds octave.weight · noise to sums[n] for each point. `sums` holds points.count floats.
+void addNoise(const NoiseOctave& octave, const Points& points, float* sums);
+
+/// Bounds of octave.weight · noise over a finite box: ± weight, or tighter about the centre's value where the
+/// box is small.
+Interval boundNoise(const NoiseOctave& octave, const Box& box);
+
+/// The octaves of fBm Σ gain^i N_i(p · lacunarity^i) / Σ gain^i, each faded by the band limit; the divisor
+/// counts all octaves asked for. What was weakened or left out is noted in the context under `field`.
+std::vector<NoiseOctave> fbmOctaves(double cellSize, int64_t octaves, double lacunarity, double gain,
+                                    int64_t period, uint32_t seed, const BuildContext& context,
+                                    const char* field);
+
+}  // namespace nephele

@@ -1,0 +1,49 @@
+// The rows that make up the field table, one function a row, and the parameters that many rows share. Depends
+// on table.h.
+#pragma once
+
+#include "bake/fields/table.h"
+
+namespace nephele {
+
+inline const Parameter kCellSize{
+    "cell_size", ParameterType::number, "Edge of one noise cell: the size of its features.", Value{1.0},
+    kPositive,   "world units"};
+inline const Parameter kSeed{"seed",
+                             ParameterType::integer,
+                             "Another number, another pattern; mixed with the recipe's seed.",
+                             Value{int64_t{0}},
+                             {-2147483648.0, 4294967295.0, false, false}};
+inline const Parameter kPeriod{"period",
+                               ParameterType::integer,
+                               "Cells after which the noise repeats on every axis; 0: never.",
+                               Value{int64_t{0}},
+                               {0.0, 1048576.0, false, false},
+                               "cells"};
+inline const Parameter kOctaves{"octaves",
+                                ParameterType::integer,
+                                "Layers of noise, each finer than the one before.",
+                                Value{int64_t{5}},
+                                {0.0, 16.0, false, false}};
+inline const Parameter kLacunarity{"lacunarity",
+                                   ParameterType::number,
+                                   "How much finer each layer is.",
+                                   Value{2.0},
+                                   {1.0, 16.0, false, false}};
+inline const Parameter kGain{
+    "gain", ParameterType::number, "How much weaker each layer is.", Value{0.5}, {0.0, 1.0, true, false}};
+
+FieldRow perlinRow();
+FieldRow fbmRow();
+FieldRow warpRow();
+FieldRow sphereRow();
+FieldRow constantRow();
+FieldRow heightProfileRow();
+FieldRow remapRow();
+FieldRow addRow();
+FieldRow multiplyRow();
+FieldRow minRow();
+FieldRow maxRow();
+FieldRow mixRow();
+
+}  // namespace nephele

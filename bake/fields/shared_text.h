@@ -1,0 +1,10 @@
+// The shared texts that fields are made of, compiled as C++. Depends on shaders/shared alone.
+#pragma once
+
+#include "shaders/shared/dialect.h"
+
+namespace nephele::shared {
+#include "shaders/shared/noise.glsl"
+#include "shaders/shared/remap.glsl"
+#include "shaders/shared/shapes.glsl"
+}  // namespace nephele::shared

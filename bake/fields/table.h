@@ -1,0 +1,101 @@
+// The one table of fields: name, sentence, parameters with type, default, range and unit, and how to build
+// it. It drives parsing, defaults, errors, `nodes`, docs, property tests and benchmarks. A new field is one
+// row and one file. Depends on base alone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "bake/fields/field.h"
+#include "base/error.h"
+#include "base/range.h"
+
+namespace nephele {
+
+enum class ParameterType { number, integer, choice, pair, vector, curve, field, fields };
+
+/// A piecewise linear function: points (x, y) with x growing, constant beyond its ends.
+using Curve = std::vector<std::array<double, 2>>;
+
+/// What a parameter may hold once read. Which one follows from its type: number double, integer int64, choice
+/// string, pair array of 2, vector array of 3, curve Curve, field FieldPtr, fields vector of FieldPtr.
+using Value = std::variant<double, int64_t, std::string, std::array<double, 2>, std::array<double, 3>, Curve,
+                           FieldPtr, std::vector<FieldPtr>>;
+
+struct Parameter {
+  std::string_view name;
+  ParameterType type;
+  std::string_view sentence;
+  std::optional<Value> fallback;       // none: the recipe must give it
+  Range range{};                       // of each number in it
+  std::string_view unit{};             // empty: none
+  std::vector<std::string> choices{};  // type == choice
+};
+
+/// An octave or a whole noise that was left out or weakened because the grid cannot hold it.
+struct BandLimitNote {
+  std::string field;
+  int octave = 0;           // from 0
+  double cellVoxels = 0.0;  // voxels per noise cell
+  double weight = 0.0;      // 0: left out
+};
+
+/// What a field may know of the bake it is built for. Nothing else: a field is a pure function of recipe,
+/// inputs and version.
+struct BuildContext {
+  double voxelSize = 1.0;  // world units; cells finer than two voxels are left out
+  int upAxis = 2;          // 1: y, 2: z
+  uint32_t seed = 0;       // the recipe's; mixed with each field's own
+  std::vector<BandLimitNote>* notes = nullptr;
+};
+
+/// Parameters by name, all present, all in range.
+class Arguments {
+ public:
+  explicit Arguments(std::map<std::string, Value, std::less<>> values) : values_(std::move(values)) {}
+  double number(std::string_view name) const { return std::get<double>(at(name)); }
+  int64_t integer(std::string_view name) const { return std::get<int64_t>(at(name)); }
+  const std::string& choice(std::string_view name) const { return std::get<std::string>(at(name)); }
+  const std::array<double, 2>& pair(std::string_view name) const {
+    return std::get<std::array<double, 2>>(at(name));
+  }
+  glm::dvec3 vector(std::string_view name) const;
+  const Curve& curve(std::string_view name) const { return std::get<Curve>(at(name)); }
+  const FieldPtr& field(std::string_view name) const { return std::get<FieldPtr>(at(name)); }
+  const std::vector<FieldPtr>& fields(std::string_view name) const {
+    return std::get<std::vector<FieldPtr>>(at(name));
+  }
+
+ private:
+  const Value& at(std::string_view name) const;
+  std::map<std::string, Value, std::less<>> values_;
+};
+
+struct FieldRow {
+  std::string_view name;
+  std::string_view sentence;
+  std::vector<Parameter> parameters;
+  FieldPtr (*build)(const Arguments&, const BuildContext&);
+  /// A complaint about values that are each in range but do not go together: the parameter at fault and a
+  /// sentence. nullopt, or a null function, where all is well. Child fields are not looked at.
+  std::optional<std::pair<std::string_view, std::string>> (*validate)(const Arguments&) = nullptr;
+};
+
+/// All rows, in the order of the docs. A field whose last-named list is all that a recipe gives may be
+/// written as a list.
+std::span<const FieldRow> fieldTable();
+
+/// The row of that name, or nullptr.
+const FieldRow* findField(std::string_view name);
+
+/// The parameter that a bare list stands for: the only one of type fields; nullptr where there is none.
+const Parameter* listParameter(const FieldRow& row);
+
+}  // namespace nephele

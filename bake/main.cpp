@@ -1,0 +1,129 @@
+// nephele-bake: argv → run → exit code, nothing else.
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+#include "bake/nodes.h"
+#include "bake/run.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/version.h"
+#include "volume/info.h"
+
+namespace {
+
+using namespace nephele;
+
+struct Command {
+  std::string pipeline = "pipeline.yaml";
+  BakeOptions options;
+  std::string frames, shard;
+  int threads = 0;
+  bool dryRun = false;
+  std::string report;
+  std::vector<std::string> files;
+  bool json = false;
+  std::string node;
+};
+
+Shard parseShard(const std::string& text) {
+  Shard shard;
+  char slash = 0;
+  std::istringstream in(text);
+  if (!(in >> shard.index >> slash >> shard.count) || slash != '/' || !in.eof() || shard.index < 1 ||
+      shard.index > shard.count)
+    throw InputError({}, "--shard must read I/N with 1 <= I <= N, not '" + text + "'");
+  return shard;
+}
+
+int bake(Command command) {
+  if (!command.frames.empty()) {
+    command.options.frames = parseFrames(command.frames);
+    if (!command.options.frames)
+      throw InputError({}, "--frames must read A-B with 0 <= A <= B, not '" + command.frames + "'");
+  }
+  if (!command.shard.empty()) command.options.shard = parseShard(command.shard);
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  command.threads > 0 ? size_t(command.threads) : size_t(cores));
+  const Pipeline pipeline = loadPipeline(command.pipeline);
+  if (command.dryRun) {
+    for (const BakeJob& job : selectJobs(pipeline, command.options)) std::cout << job.file << '\n';
+    return kExitDone;
+  }
+  const std::string report = reportAsJson(bakeAll(pipeline, command.options));
+  if (command.report == "-")
+    std::cout << report;
+  else if (!command.report.empty())
+    writeWhole(command.report, [&](const std::string& temporary) {
+      std::ofstream out(temporary, std::ios::binary);
+      if (!(out << report << std::flush)) throw WorldError("cannot write '" + temporary + "'");
+    });
+  return kExitDone;
+}
+
+int info(const Command& command) {
+  std::vector<FileInfo> infos;
+  for (const std::string& file : command.files) infos.push_back(inspectFile(file));
+  if (command.json)
+    std::cout << infoAsJson(infos);
+  else
+    for (const FileInfo& file : infos) std::cout << infoAsText(file);
+  return kExitDone;
+}
+
+int nodes(const Command& command) {
+  std::cout << (command.node.empty() ? nodesAsText() : nodeAsText(command.node));
+  return kExitDone;
+}
+
+int notBuilt(const std::string& name) {
+  throw InputError({}, "'nephele-bake " + name + "' is not built yet");
+}
+
+int run(int argc, char** argv) {
+  Command command;
+  CLI::App app("Bakes the clouds of a recipe into sparse .vdb files.", "nephele-bake");
+  app.set_version_flag("--version", std::string(programVersion()));
+  app.option_defaults()->always_capture_default();
+  app.add_option("PIPELINE", command.pipeline, "Recipe");
+  app.add_option("--out", command.options.outFolder, "Folder for the .vdb files")->type_name("DIR");
+  app.add_option("--only", command.options.only, "Bake this asset; may be given again")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  app.add_option("--frames", command.frames, "Only these frames, both ends included; default: all")
+      ->type_name("A-B");
+  app.add_option("--shard", command.shard, "Only every Nth file from the Ith on; default: all")
+      ->type_name("I/N");
+  app.add_option("--threads", command.threads, "Threads; 0: one per core")->check(CLI::Range(0, 4096));
+  app.add_flag("--force", command.options.force, "Bake also what is up to date");
+  app.add_flag("--dry-run", command.dryRun, "Check the recipe and print the files that would be written");
+  app.add_option("--report", command.report, "Write a report as JSON; -: to stdout")->type_name("FILE.json");
+  app.add_flag("--quiet", command.options.quiet, "Say nothing but errors and warnings");
+  CLI::App* const infoCommand =
+      app.add_subcommand("info", "Grids, boxes, voxels, memory, metadata of .vdb files");
+  infoCommand->add_option("FILE.vdb", command.files, "Files")->required();
+  infoCommand->add_flag("--json", command.json, "As JSON");
+  CLI::App* const nodesCommand = app.add_subcommand("nodes", "Every field with its parameters");
+  nodesCommand->add_option("NAME", command.node, "One field in full; default: all, a line each");
+  for (const char* const name : {"diff", "check", "chart"})
+    app.add_subcommand(name, "Not built yet")->allow_extras()->callback([name] { notBuilt(name); });
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitInput;
+  }
+  if (infoCommand->parsed()) return info(command);
+  if (nodesCommand->parsed()) return nodes(command);
+  return bake(command);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return nephele::runGuarded([&] { return run(argc, argv); });
+}

@@ -1,0 +1,190 @@
+// Recipes: reading, hashing, building fields. Depends on fields, scene, base.
+#include "bake/pipeline.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "bake/field_specs.h"
+#include "base/hash.h"
+#include "base/version.h"
+#include "base/yaml.h"
+
+namespace nephele {
+namespace {
+
+/// What a file name may be made of: ASCII, no digits at the end (sequences are found by them).
+bool isAssetName(const std::string& name) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), plain) && name.front() != '-' &&
+         !(name.back() >= '0' && name.back() <= '9');
+}
+
+void readFrames(yaml::MapReader& reader, Asset& asset, Diagnostics& out) {
+  const yaml::NodePtr node = reader.find("frames");
+  asset.fps = reader.number("fps", asset.fps, kPositive);
+  if (!node) return;
+  const auto text = yaml::readText(*node, "'frames'", out);
+  if (!text) return;
+  asset.frames = parseFrames(*text);
+  if (!asset.frames) out.add(node->where, "'frames' must read A-B, with 0 <= A <= B, as in 1-48");
+}
+
+Asset readAsset(const yaml::Entry& entry, FieldReader& fields, Diagnostics& out) {
+  Asset asset;
+  asset.name = entry.key;
+  asset.where = entry.where;
+  const std::string what = "asset '" + entry.key + "'";
+  if (!isAssetName(entry.key))
+    out.add(entry.where,
+            "'" + entry.key + "' cannot name a file: use letters, digits, _ and -, and no digit at the end");
+  if (entry.value->kind != yaml::Kind::map) {
+    out.add(entry.value->where, what + " must be a map, not " + yaml::describe(*entry.value));
+    return asset;
+  }
+  yaml::MapReader reader(*entry.value, what, out);
+  asset.voxelSize = reader.number("voxel_size", 0.0, kPositive);
+  asset.precision =
+      reader.choice("precision", "half", {"half", "float"}) == "half" ? Precision::half : Precision::single;
+  asset.cutoff = reader.number("cutoff", asset.cutoff, kNonNegative);
+  readFrames(reader, asset, out);
+  const bool tolerance = reader.find("tolerance") != nullptr, particles = reader.find("particles") != nullptr;
+  if (tolerance && reader.has("voxel_size"))
+    out.add(reader.where("tolerance"), what + " gives both 'voxel_size' and 'tolerance'; give one of them");
+  else if (tolerance)
+    out.add(reader.where("tolerance"), "'tolerance' is not built yet", "give 'voxel_size'");
+  else if (!reader.has("voxel_size"))
+    out.add(entry.where, what + " needs 'voxel_size'");
+  if (particles) out.add(reader.where("particles"), "'particles' is not built yet", "give 'density'");
+  if (const yaml::NodePtr density = reader.find("density"))
+    asset.density = fields.read(density, "'density'");
+  else if (!particles)
+    out.add(entry.where, what + " needs 'density'");
+  reader.finish();
+  return asset;
+}
+
+class FieldBuilder {
+ public:
+  explicit FieldBuilder(const BuildContext& context) : context_(context) {}
+
+  FieldPtr build(const FieldSpec& spec) {
+    FieldPtr& known = built_[&spec];
+    if (known) return known;
+    auto values = spec.values;
+    for (const auto& [name, children] : spec.children) {
+      std::vector<FieldPtr> list;
+      for (const FieldSpecPtr& child : children) list.push_back(build(*child));
+      const bool isList = listParameter(*spec.row) && listParameter(*spec.row)->name == name;
+      values.emplace(name, isList ? Value{std::move(list)} : Value{list.front()});
+    }
+    return built_[&spec] = spec.row->build(Arguments(std::move(values)), context_);
+  }
+
+ private:
+  BuildContext context_;
+  std::map<const FieldSpec*, FieldPtr> built_;
+};
+
+/// Hashes specs from the leaves up, each shared one once, so that sharing by name or alias changes nothing.
+class SpecHasher {
+ public:
+  const std::string& digest(const FieldSpec& spec) {
+    std::string& known = digests_[&spec];
+    if (!known.empty()) return known;
+    Hasher hasher;
+    hasher.text(spec.row->name);
+    for (const auto& [name, value] : spec.values) {
+      hasher.text(name);
+      hasher.value(int(value.index()));
+      std::visit([&hasher](const auto& v) { feed(hasher, v); }, value);
+    }
+    for (const auto& [name, children] : spec.children) {
+      hasher.text(name);
+      for (const FieldSpecPtr& child : children) hasher.text(digest(*child));
+    }
+    return digests_[&spec] = hasher.hex();
+  }
+
+ private:
+  static void feed(Hasher& out, double v) { out.value(v == 0.0 ? 0.0 : v); }  // -0 is 0
+  static void feed(Hasher& out, int64_t v) { out.value(v); }
+  static void feed(Hasher& out, const std::string& v) { out.text(v); }
+  template <size_t N>
+  static void feed(Hasher& out, const std::array<double, N>& v) {
+    for (const double x : v) feed(out, x);
+  }
+  static void feed(Hasher& out, const Curve& v) {
+    out.value(v.size());
+    for (const auto& point : v) feed(out, point);
+  }
+  // Built fields stand in arguments, never in specs.
+  static void feed(Hasher&, const FieldPtr&) {}
+  static void feed(Hasher&, const std::vector<FieldPtr>&) {}
+
+  std::map<const FieldSpec*, std::string> digests_;
+};
+
+}  // namespace
+
+Pipeline loadPipeline(const std::string& path) {
+  const yaml::NodePtr root = yaml::load(path);
+  Diagnostics out;
+  Pipeline pipeline;
+  pipeline.path = path;
+  if (root->kind != yaml::Kind::map)
+    throw InputError(root->where, "a recipe must be a map with 'assets', not " + yaml::describe(*root));
+  yaml::MapReader reader(*root, "the recipe", out);
+  pipeline.upAxis = reader.choice("up_axis", "z", {"y", "z"}).front();
+  pipeline.seed = reader.integer("seed", 0, {-2147483648.0, 4294967295.0, false, false});
+  if (const yaml::NodePtr scene = reader.find("scene")) pipeline.scene = readScene(*scene, out);
+  FieldReader fields(out);
+  if (const yaml::NodePtr named = reader.find("fields")) fields.setNamed(*named);
+  const yaml::NodePtr assets = reader.find("assets");
+  if (!assets || assets->kind != yaml::Kind::map || assets->entries.empty())
+    out.add(reader.where("assets"), "the recipe needs 'assets', a map of at least one asset");
+  else
+    for (const yaml::Entry& entry : assets->entries) pipeline.assets.push_back(readAsset(entry, fields, out));
+  fields.readRest();
+  reader.finish();
+  out.throwIfAny();
+  return pipeline;
+}
+
+std::optional<FrameRange> parseFrames(const std::string& text) {
+  FrameRange range;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, range.first);
+  if (first.ec != std::errc{} || range.first < 0) return std::nullopt;
+  if (first.ptr == end) return FrameRange{range.first, range.first};
+  if (*first.ptr != '-') return std::nullopt;
+  const auto last = std::from_chars(first.ptr + 1, end, range.last);
+  if (last.ec != std::errc{} || last.ptr != end || range.last < range.first) return std::nullopt;
+  return range;
+}
+
+FieldPtr buildField(const FieldSpec& spec, const BuildContext& context) {
+  return FieldBuilder(context).build(spec);
+}
+
+std::string recipeHash(const Pipeline& pipeline, const Asset& asset) {
+  Hasher hasher;
+  hasher.text(programVersion());
+  hasher.value(pipeline.upAxis);
+  hasher.value(pipeline.seed);
+  hasher.value(asset.voxelSize);
+  hasher.value(int(asset.precision));
+  hasher.value(asset.cutoff);
+  const bool medium = pipeline.scene && pipeline.scene->medium;
+  hasher.value(int(medium));
+  if (medium) {
+    hasher.value(pipeline.scene->medium->sigmaS);
+    hasher.value(pipeline.scene->medium->sigmaA);
+    hasher.value(pipeline.scene->medium->g);
+  }
+  hasher.text(SpecHasher().digest(*asset.density));
+  return hasher.hex();
+}
+
+}  // namespace nephele

@@ -1,0 +1,70 @@
+// A recipe, read: YAML → plain structs, every value checked against the field table and knowing
+// file:line:column. Depends on fields, scene, base; no OpenVDB.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/fields/table.h"
+#include "base/error.h"
+#include "scene/scene.h"
+
+namespace nephele {
+
+/// One field of a recipe with every parameter settled. Shared where the recipe names or aliases it.
+struct FieldSpec {
+  const FieldRow* row = nullptr;
+  SourceLocation where;
+  std::map<std::string, Value, std::less<>> values;  // all but child fields
+  std::map<std::string, std::vector<std::shared_ptr<const FieldSpec>>, std::less<>>
+      children;  // field and fields
+};
+using FieldSpecPtr = std::shared_ptr<const FieldSpec>;
+
+enum class Precision { half, single };
+
+/// Frames A to B, both ends included.
+struct FrameRange {
+  int first = 0;
+  int last = 0;
+};
+
+struct Asset {
+  std::string name;
+  SourceLocation where;
+  double voxelSize = 0.0;  // world units
+  Precision precision = Precision::half;
+  double cutoff = 0.001;  // voxels at or below are inactive and 0
+  std::optional<FrameRange> frames;
+  double fps = 24.0;
+  FieldSpecPtr density;
+};
+
+struct Pipeline {
+  std::string path;
+  char upAxis = 'z';
+  int64_t seed = 0;
+  std::optional<Scene> scene;
+  std::vector<Asset> assets;  // in file order
+};
+
+/// Reads a recipe. Throws InputError with all of its errors.
+Pipeline loadPipeline(const std::string& path);
+
+/// A, B or A-B with A ≤ B, each at least 0. nullopt where the text is something else.
+std::optional<FrameRange> parseFrames(const std::string& text);
+
+/// Builds the asset's density. Fields that the recipe shares are built once. `context` gives what a bake
+/// decides.
+FieldPtr buildField(const FieldSpec& spec, const BuildContext& context);
+
+/// 32 hex digits of everything that the asset's content depends on: its fields with all parameters, voxel
+/// size, cutoff, precision, up axis, seed, medium, and the program's version. Equal recipes written
+/// differently give equal hashes.
+std::string recipeHash(const Pipeline& pipeline, const Asset& asset);
+
+}  // namespace nephele

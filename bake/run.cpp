@@ -1,0 +1,199 @@
+// A whole bake. Depends on pipeline, voxelize, volume, base.
+#include "bake/run.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <mutex>
+
+#include "bake/voxelize.h"
+#include "base/files.h"
+#include "base/progress.h"
+#include "volume/vdb_header.h"
+
+namespace nephele {
+namespace {
+
+namespace fs = std::filesystem;
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The process's largest resident set so far, in bytes.
+uint64_t peakBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return uint64_t(usage.ru_maxrss) * 1024;  // Linux counts kilobytes
+}
+
+std::string fileOf(const std::string& folder, const std::string& name, const std::optional<int>& frame) {
+  char suffix[16] = "";
+  if (frame) std::snprintf(suffix, sizeof suffix, "_%04d", *frame);
+  return (fs::path(folder) / (name + suffix + ".vdb")).string();
+}
+
+/// Whether the file is there, whole, and baked from this recipe by this version.
+bool isUpToDate(const BakeJob& job, const std::string& hash) {
+  if (!fs::exists(job.file)) return false;
+  try {
+    const VdbHeader header = readVdbHeader(job.file);
+    const auto found = header.metadata.find("recipe_hash");
+    return found != header.metadata.end() && found->second == hash;
+  } catch (const InputError&) {
+    return false;  // damaged: bake it again
+  }
+}
+
+Provenance provenanceOf(const Pipeline& pipeline, const BakeJob& job, const std::string& hash) {
+  Provenance provenance;
+  provenance.upAxis = pipeline.upAxis;
+  provenance.recipeHash = hash;
+  provenance.seed = pipeline.seed;
+  provenance.frame = job.frame;
+  if (pipeline.scene && pipeline.scene->medium) {
+    provenance.hasMedium = true;
+    provenance.sigmaS = pipeline.scene->medium->sigmaS;
+    provenance.sigmaA = pipeline.scene->medium->sigmaA;
+    provenance.g = pipeline.scene->medium->g;
+  }
+  return provenance;
+}
+
+Voxelized fill(const Field& field, const Asset& asset, const std::string& label, bool quiet) {
+  std::unique_ptr<Progress> bar;
+  uint64_t drawn = 0;
+  std::mutex mutex;
+  const LeafProgress progress = [&](uint64_t leaves, uint64_t total) {
+    const std::lock_guard lock(mutex);
+    if (!bar) bar = std::make_unique<Progress>(label, total, quiet);
+    if (leaves > drawn) bar->advance(leaves - drawn);
+    drawn = std::max(drawn, leaves);
+  };
+  try {
+    return voxelize(field, {asset.voxelSize, asset.cutoff, asset.precision == Precision::half}, progress);
+  } catch (const VoxelizeError& error) {
+    throw InputError(asset.where, "asset '" + asset.name + "': " + error.what());
+  }
+}
+
+BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::string& hash, bool quiet) {
+  BakeRecord record;
+  BuildContext context;
+  context.voxelSize = job.asset->voxelSize;
+  context.upAxis = pipeline.upAxis == 'y' ? 1 : 2;
+  context.seed = uint32_t(pipeline.seed);
+  context.notes = &record.bandLimit;
+  auto start = std::chrono::steady_clock::now();
+  const FieldPtr field = buildField(*job.asset->density, context);
+  const Voxelized voxelized = fill(*field, *job.asset, fs::path(job.file).filename().string(), quiet);
+  record.secondsFill = secondsSince(start);
+  start = std::chrono::steady_clock::now();
+  record.contentHash = contentHashOf(voxelized);
+  record.secondsHash = secondsSince(start);
+  start = std::chrono::steady_clock::now();
+  record.bytes = writeDensity(job.file, voxelized, provenanceOf(pipeline, job, hash));
+  record.secondsWrite = secondsSince(start);
+  record.voxelsActive = voxelized.voxelsActive;
+  record.voxelsEvaluated = voxelized.voxelsEvaluated;
+  record.gridBytes = voxelized.gridBytes;
+  record.mass = voxelized.mass;
+  record.maximum = voxelized.maximum;
+  record.peakBytes = peakBytes();
+  // Blender's viewport and texture-based viewers allocate the whole box.
+  constexpr int kLongAxis = 2048;
+  if (voxelized.longestAxis > kLongAxis)
+    std::cerr << "warning: " << job.file << ": " << voxelized.longestAxis
+              << " voxels along its longest axis; viewers that make grids dense may run out of memory\n";
+  if (voxelized.voxelsActive == 0)
+    std::cerr << "warning: " << job.file << ": no voxel exceeds the cutoff; the file is valid and empty\n";
+  return record;
+}
+
+void tell(const BakeRecord& record) {
+  char line[256];
+  if (record.skipped)
+    std::snprintf(line, sizeof line, "%s: up to date\n", record.file.c_str());
+  else
+    std::snprintf(line, sizeof line,
+                  "%s: %.2f million active voxels, %.1f MB, %.2f s (fill %.2f, write %.2f)\n",
+                  record.file.c_str(), double(record.voxelsActive) * 1e-6, double(record.bytes) * 1e-6,
+                  record.secondsFill + record.secondsHash + record.secondsWrite, record.secondsFill,
+                  record.secondsWrite);
+  std::cerr << line;
+  for (const BandLimitNote& note : record.bandLimit) {
+    std::snprintf(line, sizeof line, "  %s: octave %d has %.2f voxels a cell: %s\n", note.field.c_str(),
+                  note.octave + 1, note.cellVoxels, note.weight > 0.0 ? "weakened" : "left out");
+    std::cerr << line;
+  }
+}
+
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw WorldError("cannot make the folder '" + folder + "': " + error.message());
+}
+
+}  // namespace
+
+std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& options) {
+  Diagnostics out;
+  std::vector<std::string_view> names;
+  for (const Asset& asset : pipeline.assets) names.push_back(asset.name);
+  for (const std::string& name : options.only)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      out.add({pipeline.path, 0, 0}, "the recipe has no asset '" + name + "'", didYouMean(name, names));
+  out.throwIfAny();
+  std::vector<BakeJob> jobs;
+  bool anySequence = false;
+  for (const Asset& asset : pipeline.assets) {
+    if (!options.only.empty() &&
+        std::find(options.only.begin(), options.only.end(), asset.name) == options.only.end())
+      continue;
+    if (!asset.frames) {
+      jobs.push_back({&asset, std::nullopt, fileOf(options.outFolder, asset.name, std::nullopt)});
+      continue;
+    }
+    anySequence = true;
+    for (int frame = asset.frames->first; frame <= asset.frames->last; ++frame)
+      if (!options.frames || (options.frames->first <= frame && frame <= options.frames->last))
+        jobs.push_back({&asset, frame, fileOf(options.outFolder, asset.name, frame)});
+  }
+  if (options.frames && (!anySequence || jobs.empty()))
+    throw InputError({pipeline.path, 0, 0}, "no asset has a frame from " +
+                                                std::to_string(options.frames->first) + " to " +
+                                                std::to_string(options.frames->last));
+  std::vector<BakeJob> mine;
+  for (size_t n = 0; n < jobs.size(); ++n)
+    if (int(n % size_t(options.shard.count)) == options.shard.index - 1) mine.push_back(jobs[n]);
+  return mine;
+}
+
+std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& options) {
+  const std::vector<BakeJob> jobs = selectJobs(pipeline, options);
+  makeFolder(options.outFolder);
+  removeLeftovers(options.outFolder);
+  std::vector<BakeRecord> records;
+  for (const BakeJob& job : jobs) {
+    const std::string hash = recipeHash(pipeline, *job.asset);
+    BakeRecord record;
+    if (!options.force && isUpToDate(job, hash))
+      record.skipped = true;
+    else
+      record = bakeOne(pipeline, job, hash, options.quiet);
+    record.name = job.asset->name;
+    record.file = job.file;
+    record.frame = job.frame;
+    record.recipeHash = hash;
+    if (!options.quiet) tell(record);
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+}  // namespace nephele

@@ -1,0 +1,61 @@
+// A whole bake: which files, which are up to date, field → grid → file, and the report. Depends on pipeline,
+// voxelize, volume, base; no OpenVDB.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/pipeline.h"
+
+namespace nephele {
+
+/// I of N: every Nth file from the Ith on, 1 ≤ index ≤ count.
+struct Shard {
+  int index = 1;
+  int count = 1;
+};
+
+struct BakeOptions {
+  std::string outFolder = "out";
+  std::vector<std::string> only;     // asset names; empty: all
+  std::optional<FrameRange> frames;  // of what the recipe asks for; nullopt: all
+  Shard shard;
+  bool force = false;  // also what is up to date
+  bool quiet = false;  // no progress, no sentences about files
+};
+
+/// One file to be.
+struct BakeJob {
+  const Asset* asset = nullptr;
+  std::optional<int> frame;
+  std::string file;  // outFolder/NAME.vdb or outFolder/NAME_0001.vdb
+};
+
+/// What one file cost and holds. Files that were up to date have only the first five and `skipped`.
+struct BakeRecord {
+  std::string name;
+  std::string file;
+  std::optional<int> frame;
+  std::string recipeHash;
+  bool skipped = false;
+  double secondsFill = 0.0, secondsHash = 0.0, secondsWrite = 0.0;
+  uint64_t voxelsActive = 0, voxelsEvaluated = 0;
+  uint64_t gridBytes = 0, bytes = 0, peakBytes = 0;
+  std::string contentHash;
+  double mass = 0.0, maximum = 0.0;
+  std::vector<BandLimitNote> bandLimit;
+};
+
+/// The files that the options select, in recipe order. Throws InputError for an asset that the recipe lacks,
+/// and for frames none of which the recipe has.
+std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& options);
+
+/// Bakes what selectJobs() gives. Each file appears whole or not at all; one whose recipe hash, frame and
+/// size are those of this recipe is left as it is. Sentences go to stderr. Throws InputError or WorldError.
+std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& options);
+
+/// The report of DESIGN.md, section 1: assets[{name, file, frame, seconds{…}, …}].
+std::string reportAsJson(const std::vector<BakeRecord>& records);
+
+}  // namespace nephele

@@ -1,0 +1,60 @@
+// Noise, pointwise: the definitions that block kernels are tested against. A point comes as the integer lattice cell that
+// holds it and its position in the cell, in [0, 1), so that noise keeps its precision at any distance from the origin.
+
+// 1/1.0364: the largest |gradient noise| with the 12 edge gradients and the quintic fade is 1.03635, at (½, ½, 0.645)
+// up to symmetry, where every corner's gradient pulls the same way. So |perlinNoise| ≤ 1.
+NPH_CONST float kPerlinScale = 0.96487842532f;
+
+// Mixes a lattice point and a seed into 32 well-spread bits.
+NPH_FN uint hashCell(ivec3 cell, uint seed) {
+  uint h = (uint(cell.x) * 0x9e3779b1u) ^ (uint(cell.y) * 0x85ebca77u) ^ (uint(cell.z) * 0xc2b2ae3du) ^ seed;
+  h ^= h >> 15u;
+  h *= 0x2c1b3c6du;
+  h ^= h >> 12u;
+  h *= 0x297a2d39u;
+  h ^= h >> 15u;
+  return h;
+}
+
+// The seed of octave, axis or layer `number` of a noise, apart from the seeds of its neighbours.
+NPH_FN uint seedApart(uint seed, int number) {
+  return hashCell(ivec3(number, 0x5bd1, 0x1b87), seed);
+}
+
+// 6t⁵ − 15t⁴ + 10t³ [Perlin 2002].
+NPH_FN float fadeQuintic(float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }
+
+// Dot product with one of the 12 edge gradients (four of them twice, to fill 16), chosen by the low bits [Perlin 2002].
+NPH_FN float gradientDot(uint hash, float x, float y, float z) {
+  uint h = hash & 15u;
+  float u = h < 8u ? x : y;
+  float v = h < 4u ? y : (h == 12u || h == 14u ? x : z);
+  return ((h & 1u) == 0u ? u : -u) + ((h & 2u) == 0u ? v : -v);
+}
+
+// Lattice coordinate folded into [0, period); period 0 folds nothing.
+NPH_FN int foldCell(int cell, int period) {
+  if (period == 0) return cell;
+  int rest = cell % period;
+  return rest < 0 ? rest + period : rest;
+}
+
+// Gradient noise in [−1, 1]; 0 at lattice points. `period` in cells for all axes, 0 for none [Perlin 1985, 2002].
+NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
+  float corner[8];
+  for (int c = 0; c < 8; ++c) {
+    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
+    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    corner[c] = gradientDot(hashCell(at, seed), f.x - float(o.x), f.y - float(o.y), f.z - float(o.z));
+  }
+  float sx = fadeQuintic(f.x);
+  float sy = fadeQuintic(f.y);
+  float sz = fadeQuintic(f.z);
+  float x00 = corner[0] + sx * (corner[1] - corner[0]);
+  float x10 = corner[2] + sx * (corner[3] - corner[2]);
+  float x01 = corner[4] + sx * (corner[5] - corner[4]);
+  float x11 = corner[6] + sx * (corner[7] - corner[6]);
+  float y0 = x00 + sy * (x10 - x00);
+  float y1 = x01 + sy * (x11 - x01);
+  return (y0 + sz * (y1 - y0)) * kPerlinScale;
+}

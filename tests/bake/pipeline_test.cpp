@@ -1,0 +1,177 @@
+// Recipes: what is read, what is refused and where, what the recipe hash sees.
+#include "bake/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+namespace nephele::test {
+namespace {
+
+/// A recipe in a file that goes with the object.
+class RecipeFile {
+ public:
+  explicit RecipeFile(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() /
+              ("nephele_recipe_" +
+               std::to_string(std::chrono::steady_clock::now().time_since_epoch().count()) + ".yaml")) {
+    std::ofstream(path_) << text;
+  }
+  ~RecipeFile() { std::filesystem::remove(path_); }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+Pipeline load(const std::string& text) { return loadPipeline(RecipeFile(text).path()); }
+
+/// A recipe whose only asset has this density, given in flow style.
+std::string withDensity(const std::string& density) {
+  return "assets:\n  puff:\n    voxel_size: 0.1\n    density: " + density + "\n";
+}
+
+/// All complaints about a recipe as "line:column: sentence; hint"; empty where it loads.
+std::vector<std::string> complaints(const std::string& text) {
+  try {
+    load(text);
+  } catch (const InputError& error) {
+    std::vector<std::string> list;
+    for (const Diagnostic& d : error.diagnostics())
+      list.push_back(std::to_string(d.where.line) + ":" + std::to_string(d.where.column) + ": " + d.sentence +
+                     (d.hint.empty() ? "" : "; " + d.hint));
+    return list;
+  }
+  return {};
+}
+
+std::string onlyComplaint(const std::string& text) {
+  const auto list = complaints(text);
+  EXPECT_EQ(list.size(), 1u) << text;
+  return list.empty() ? "" : list.front();
+}
+
+TEST(Pipeline, ReadsAnAssetWithDefaults) {
+  const Pipeline pipeline = load("up_axis: y\n" + withDensity("{ sphere: { radius: 2 } }"));
+  ASSERT_EQ(pipeline.assets.size(), 1u);
+  const Asset& asset = pipeline.assets.front();
+  EXPECT_EQ(pipeline.upAxis, 'y');
+  EXPECT_EQ(asset.name, "puff");
+  EXPECT_EQ(asset.precision, Precision::half);
+  EXPECT_DOUBLE_EQ(asset.cutoff, 0.001);
+  EXPECT_EQ(asset.density->row->name, "sphere");
+  EXPECT_DOUBLE_EQ(std::get<double>(asset.density->values.at("radius")), 2.0);
+  EXPECT_DOUBLE_EQ(std::get<double>(asset.density->values.at("falloff")), 1.0);
+}
+
+TEST(Pipeline, NumbersNamesAndListsStandForFields) {
+  const Pipeline pipeline =
+      load("fields:\n  ball: { sphere: { radius: 3 } }\n" + withDensity("{ multiply: [ball, 0.5, fbm] }"));
+  const auto& inputs = pipeline.assets.front().density->children.at("inputs");
+  ASSERT_EQ(inputs.size(), 3u);
+  EXPECT_DOUBLE_EQ(std::get<double>(inputs[0]->values.at("radius")), 3.0);
+  EXPECT_EQ(inputs[1]->row->name, "constant");
+  EXPECT_EQ(inputs[2]->row->name, "fbm");
+}
+
+struct Case {
+  const char* density;
+  const char* complaint;
+};
+
+TEST(Pipeline, RefusesBadFieldsWithPlaceAndSentence) {
+  const Case cases[] = {
+      {"{ perlim: { } }", "4:16: unknown field 'perlim'; did you mean 'perlin'?"},
+      {"nowhere", "4:14: unknown field 'nowhere'"},
+      {"{ sphere: { radius: -1 } }", "4:34: 'radius' of 'sphere' must be greater than 0"},
+      {"{ sphere: { radius: big } }", "4:34: 'radius' of 'sphere' must be a number, found 'big'"},
+      {"{ sphere: { radius: .nan } }", "4:34: 'radius' of 'sphere'"},
+      {"{ sphere: { radios: 1 } }", "4:26: "},
+      {"{ sphere: { center: [1, 2] } }", "4:34: 'center' of 'sphere'"},
+      {"{ remap: { input: 1, from: [2, 2] } }", "4:35: both ends of 'from' are equal"},
+      {"{ warp: { warp_scale: 1 } }", "4:16: 'warp' needs 'input'"},
+      {"{ multiply: [] }", "4:26: 'multiply' takes a list of at least one field, not an empty list"},
+      {"{ fbm: { octaves: 2.5 } }", "4:32: 'octaves' of 'fbm'"},
+      {"{ fbm: { period: 4, lacunarity: 2.5 } }", "4:34: a noise with a period needs a whole lacunarity"},
+      {"{ height_profile: { base: 1, top: 1 } }", "4:43: 'base' and 'top' are equal"},
+      {"{ height_profile: { curve: [[1, 0], [0, 1]] } }",
+       "4:50: the points of 'curve' of 'height_profile' must have growing"},
+      {"{ sphere: {}, fbm: {} }", "4:14: 'density' must be one field"},
+  };
+  for (const Case& c : cases) {
+    const std::string complaint = onlyComplaint(withDensity(c.density));
+    EXPECT_EQ(complaint.rfind(c.complaint, 0), 0u)
+        << c.density << "\n  said:     " << complaint << "\n  expected: " << c.complaint;
+  }
+}
+
+TEST(Pipeline, TellsAllErrorsAtOnceInOrder) {
+  const auto list = complaints(
+      "assets:\n  a:\n    voxel_size: -1\n    density: { perlim: {} }\n    colour: red\n  b: {}\n");
+  ASSERT_EQ(list.size(), 5u);
+  EXPECT_EQ(list[0].rfind("3:17: ", 0), 0u) << list[0];
+  EXPECT_EQ(list[1].rfind("4:16: unknown field 'perlim'", 0), 0u) << list[1];
+  EXPECT_EQ(list[2].rfind("5:5: ", 0), 0u) << list[2];
+  EXPECT_EQ(list[3].rfind("6:3: ", 0), 0u) << list[3];
+}
+
+TEST(Pipeline, RefusesWhatIsContradictoryOrNotBuilt) {
+  EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, tolerance: 3%, density: 1 } }")
+                .find("both 'voxel_size' and 'tolerance'"),
+            std::string::npos);
+  EXPECT_NE(onlyComplaint("assets: { a: { tolerance: 3%, density: 1 } }").find("not built yet"),
+            std::string::npos);
+  EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, particles: {} } }").find("not built yet"),
+            std::string::npos);
+  EXPECT_NE(onlyComplaint("assets: { cloud_9: { voxel_size: 1, density: 1 } }").find("no digit at the end"),
+            std::string::npos);
+  EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, density: 1, frames: 8-2 } }").find("A-B"),
+            std::string::npos);
+}
+
+TEST(Pipeline, ACycleIsAnErrorWithItsPath) {
+  const auto list = complaints(
+      "fields:\n  a: { add: [b, 1] }\n  b: { max: [c] }\n  c: { multiply: [a, 2] }\n" + withDensity("a"));
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_NE(list[0].find("a -> b -> c -> a"), std::string::npos) << list[0];
+}
+
+TEST(Pipeline, AliasesOfAliasesStayCheap) {
+  // 2^40 leaves if every path were walked.
+  std::string text = "fields:\n  f00: &f00 { add: [1, 1] }\n";
+  for (int n = 1; n <= 40; ++n) {
+    char line[96];
+    std::snprintf(line, sizeof line, "  f%02d: &f%02d { add: [*f%02d, *f%02d] }\n", n, n, n - 1, n - 1);
+    text += line;
+  }
+  const Pipeline pipeline = load(text + withDensity("{ multiply: [sphere, *f40] }"));
+  const FieldPtr field = buildField(*pipeline.assets.front().density, {0.1, 2, 0, nullptr});
+  EXPECT_NE(field, nullptr);
+  EXPECT_EQ(recipeHash(pipeline, pipeline.assets.front()).size(), 32u);
+}
+
+TEST(RecipeHash, SeesContentAndNotSpelling) {
+  const auto hash = [](const std::string& text) {
+    const Pipeline pipeline = load(text);
+    return recipeHash(pipeline, pipeline.assets.front());
+  };
+  const std::string plain = hash(withDensity("{ multiply: [{ sphere: { radius: 1 } }, 0.5] }"));
+  EXPECT_EQ(plain, hash("fields: { ball: { sphere: { falloff: 1.0 } } }\n" +
+                        withDensity("{ multiply: { inputs: [ball, { constant: { value: 5e-1 } }] } }")));
+  EXPECT_NE(plain, hash(withDensity("{ multiply: [{ sphere: { radius: 1.001 } }, 0.5] }")));
+  EXPECT_NE(plain, hash(withDensity("{ multiply: [0.5, { sphere: { radius: 1 } }] }")));
+  EXPECT_NE(plain, hash("seed: 1\n" + withDensity("{ multiply: [{ sphere: { radius: 1 } }, 0.5] }")));
+}
+
+TEST(Frames, ReadsRangesAndNothingElse) {
+  ASSERT_TRUE(parseFrames("3-12"));
+  EXPECT_EQ(parseFrames("3-12")->last, 12);
+  EXPECT_EQ(parseFrames("7")->first, 7);
+  for (const char* text : {"", "-", "3-", "-3", "12-3", "1-2-3", "1 - 2", "a-b", "99999999999"})
+    EXPECT_FALSE(parseFrames(text)) << text;
+}
+
+}  // namespace
+}  // namespace nephele::test
