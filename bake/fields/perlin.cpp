@@ -4,30 +4,17 @@
 
 #include <cmath>
 
+#include "bake/fields/cell_place.h"
+#include "bake/fields/noise_kernels.h"
 #include "bake/fields/rows.h"
 #include "bake/fields/shared_text.h"
 
 namespace nephele {
 namespace {
 
-/// A world coordinate as lattice cell and place in it. Cells wrap at 2^32: noise repeats there, 4 billion
-/// cells away.
-struct CellPlace {
-  int32_t cell;
-  float fraction;
-};
-CellPlace place(double coordinate, double cellSize) {
-  const double cells = coordinate / cellSize;
-  const double whole = std::floor(cells);
-  return {int32_t(uint32_t(int64_t(whole))), float(cells - whole)};
-}
-
-/// Adds to a cell without overflow: wraps at 2^32.
-int32_t stepped(int32_t cell, float by) { return int32_t(uint32_t(cell) + uint32_t(int32_t(by))); }
-
 float noiseAt(const NoiseOctave& octave, const glm::dvec3& p) {
-  const CellPlace x = place(p.x, octave.cellSize), y = place(p.y, octave.cellSize),
-                  z = place(p.z, octave.cellSize);
+  const CellPlace x = cellPlace(p.x, octave.cellSize), y = cellPlace(p.y, octave.cellSize),
+                  z = cellPlace(p.z, octave.cellSize);
   return shared::perlinNoise({x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction}, octave.period,
                              octave.seed);
 }
@@ -35,22 +22,6 @@ float noiseAt(const NoiseOctave& octave, const glm::dvec3& p) {
 }  // namespace
 
 double bandLimit(double cellVoxels) { return std::clamp((cellVoxels - 2.0) / 2.0, 0.0, 1.0); }
-
-void addNoise(const NoiseOctave& octave, const Points& points, float* sums) {
-  const CellPlace x0 = place(points.origin.x, octave.cellSize);
-  const CellPlace y0 = place(points.origin.y, octave.cellSize);
-  const CellPlace z0 = place(points.origin.z, octave.cellSize);
-  const float frequency = float(1.0 / octave.cellSize);
-  for (size_t n = 0; n < points.count; ++n) {
-    const float x = x0.fraction + points.x[n] * frequency;
-    const float y = y0.fraction + points.y[n] * frequency;
-    const float z = z0.fraction + points.z[n] * frequency;
-    const float cx = std::floor(x), cy = std::floor(y), cz = std::floor(z);
-    sums[n] += octave.weight *
-               shared::perlinNoise({stepped(x0.cell, cx), stepped(y0.cell, cy), stepped(z0.cell, cz)},
-                                   {x - cx, y - cy, z - cz}, octave.period, octave.seed);
-  }
-}
 
 Interval boundNoise(const NoiseOctave& octave, const Box& box) {
   const double weight = std::abs(double(octave.weight));
@@ -99,7 +70,12 @@ class NoiseField final : public Field {
 
   void evaluate(const Points& points, float* values) const override {
     std::fill_n(values, points.count, 0.0f);
-    for (const NoiseOctave& octave : octaves_) addNoise(octave, points, values);
+    for (const NoiseOctave& octave : octaves_) addNoiseAtPoints(octave, points, values);
+  }
+
+  void evaluate(const Lattice& lattice, float* values) const override {
+    std::fill_n(values, kBlockPoints, 0.0f);
+    addNoiseOnLattice(octaves_.data(), octaves_.size(), lattice, values);
   }
 
   Interval bounds(const Box& box) const override {

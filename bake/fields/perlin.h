@@ -1,5 +1,5 @@
-// Gradient noise of many octaves as a building block of fields: values at points and on blocks, bounds, band
-// limit. Depends on field.h, table.h and shared text.
+// Gradient noise of many octaves as a building block of fields: octaves, bounds, band limit. Values come from
+// noise_kernels.h. Depends on field.h, table.h and shared text.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +28,6 @@ inline constexpr double kPerlinSlope = 3.75 * 0.96487842532;
 /// The same along (1, 1, 1) for a displacement of one cell on each axis: 5.396 · kPerlinScale
 /// (supremum 5.39573).
 inline constexpr double kPerlinCornerSlope = 5.396 * 0.96487842532;
-
-/// Adds octave.weight · noise to sums[n] for each point. `sums` holds points.count floats.
-void addNoise(const NoiseOctave& octave, const Points& points, float* sums);
 
 /// Bounds of octave.weight · noise over a finite box: ± weight, or tighter about the centre's value where the
 /// box is small.

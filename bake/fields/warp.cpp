@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "bake/fields/noise_kernels.h"
 #include "bake/fields/perlin.h"
 #include "bake/fields/rows.h"
 #include "bake/fields/shared_text.h"
@@ -17,15 +18,18 @@ class Warp final : public Field {
       : input_(std::move(input)), scale_(scale), noise_(std::move(noise)) {}
 
   void evaluate(const Points& points, float* values) const override {
-    float moved[3][kBlockPoints];
-    const float* const from[3] = {points.x, points.y, points.z};
-    for (int axis = 0; axis < 3; ++axis) {
-      std::fill_n(moved[axis], points.count, 0.0f);
-      for (const NoiseOctave& octave : noise_[axis]) addNoise(octave, points, moved[axis]);
-      for (size_t n = 0; n < points.count; ++n)
-        moved[axis][n] = from[axis][n] + float(scale_) * moved[axis][n];
-    }
-    input_->evaluate(Points{points.origin, points.count, moved[0], moved[1], moved[2]}, values);
+    const auto addNoise = [&](const std::vector<NoiseOctave>& noise, float* sums) {
+      for (const NoiseOctave& octave : noise) addNoiseAtPoints(octave, points, sums);
+    };
+    evaluateMoved(points, addNoise, values);
+  }
+
+  void evaluate(const Lattice& lattice, float* values) const override {
+    const LatticePoints block(lattice);
+    const auto addNoise = [&](const std::vector<NoiseOctave>& noise, float* sums) {
+      addNoiseOnLattice(noise.data(), noise.size(), lattice, sums);
+    };
+    evaluateMoved(block.points(), addNoise, values);
   }
 
   Interval bounds(const Box& box) const override {
@@ -56,6 +60,20 @@ class Warp final : public Field {
   }
 
  private:
+  /// `addNoise(noise, sums)` adds an axis' displacement noise at the points.
+  template <class AddNoise>
+  void evaluateMoved(const Points& points, const AddNoise& addNoise, float* values) const {
+    float moved[3][kBlockPoints];
+    const float* const from[3] = {points.x, points.y, points.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      std::fill_n(moved[axis], points.count, 0.0f);
+      addNoise(noise_[size_t(axis)], moved[axis]);
+      for (size_t n = 0; n < points.count; ++n)
+        moved[axis][n] = from[axis][n] + float(scale_) * moved[axis][n];
+    }
+    input_->evaluate(Points{points.origin, points.count, moved[0], moved[1], moved[2]}, values);
+  }
+
   FieldPtr input_;
   double scale_;
   std::array<std::vector<NoiseOctave>, 3> noise_;

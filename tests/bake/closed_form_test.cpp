@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "bake/fields/noise_kernels.h"
 #include "bake/fields/perlin.h"
 #include "bake/fields/shared_text.h"
 #include "tests/bake/field_samples.h"
@@ -105,7 +106,7 @@ TEST(Warp, ReadsItsInputAtDisplacedPlaces) {
       float shift = 0.0f;
       for (const NoiseOctave& octave :
            fbmOctaves(1.0, 2, 2.0, 0.5, 0, shared::seedApart(seed, axis), {0.01, 2, 0, nullptr}, "warp"))
-        addNoise(octave, Points{p, 1, &zero, &zero, &zero}, &shift);
+        addNoiseAtPoints(octave, Points{p, 1, &zero, &zero, &zero}, &shift);
       q[axis] += 0.8 * double(shift);
     }
     ASSERT_NEAR(valueAt(*report.warped, p), valueAt(*report.inner, q), 1e-5);

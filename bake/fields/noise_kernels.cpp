@@ -1,0 +1,394 @@
+// Gradient noise by SIMD. On a block, the lattice corners are gathered once; gradients are mixed over x and y
+// in vectors whose lanes are the corners along z, and a permutation hands each voxel of a row its two
+// corners. Depends on perlin.h, Highway.
+#include "bake/fields/noise_kernels.h"
+
+#include "bake/fields/cell_place.h"
+#include "bake/fields/shared_text.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bake/fields/noise_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace nephele {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET != HWY_SCALAR
+
+// The same constants as in shared::hashCell, which NoiseKernels.AgreeWithTheDefinition holds them to.
+constexpr uint32_t kHashX = 0x9e3779b1u, kHashY = 0x85ebca77u, kHashZ = 0xc2b2ae3du;
+constexpr uint32_t kMixA = 0x2c1b3c6du, kMixB = 0x297a2d39u;
+
+template <class DU, class VU = hn::Vec<DU>>
+HWY_INLINE VU mixHash(DU du, VU h) {
+  h = hn::Xor(h, hn::ShiftRight<15>(h));
+  h = hn::Mul(h, hn::Set(du, kMixA));
+  h = hn::Xor(h, hn::ShiftRight<12>(h));
+  h = hn::Mul(h, hn::Set(du, kMixB));
+  return hn::Xor(h, hn::ShiftRight<15>(h));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V fade(D d, V t) {
+  const V inner =
+      hn::Add(hn::Mul(t, hn::Sub(hn::Mul(t, hn::Set(d, 6.0f)), hn::Set(d, 15.0f))), hn::Set(d, 10.0f));
+  return hn::Mul(hn::Mul(hn::Mul(t, t), t), inner);
+}
+
+template <class V>
+HWY_INLINE V mix(V a, V b, V t) {
+  return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
+}
+
+// Gradients ±1 or 0 along each axis, from the low four bits of a hash, as shared::gradientDot chooses them.
+template <class D, class V, class VU>
+HWY_INLINE void gradients(D d, VU hash, V& gx, V& gy, V& gz) {
+  const hn::RebindToUnsigned<D> du;
+  const V one = hn::Set(d, 1.0f);
+  const auto bit = [&](uint32_t mask, uint32_t value) HWY_ATTR {
+    return hn::RebindMask(d, hn::Eq(hn::And(hash, hn::Set(du, mask)), hn::Set(du, value)));
+  };
+  const V su = hn::BitCast(d, hn::Or(hn::BitCast(du, one), hn::ShiftLeft<31>(hash)));
+  const VU sign = hn::And(hn::ShiftLeft<30>(hash), hn::Set(du, 0x80000000u));
+  const V sv = hn::BitCast(d, hn::Or(hn::BitCast(du, one), sign));
+  const auto low8 = bit(8u, 0u), low4 = bit(12u, 0u), twist = bit(13u, 12u);
+  // u goes to x below 8, to y from there on; v to y below 4, to x at 12 and 14, to z elsewhere. Never both to
+  // one axis.
+  gx = hn::IfThenElse(low8, su, hn::IfThenElseZero(twist, sv));
+  gy = hn::IfThenElse(low8, hn::IfThenElseZero(low4, sv), su);
+  gz = hn::IfThenZeroElse(hn::Or(low4, twist), sv);
+}
+
+// One axis of a block: the cell of each of its 8 planes relative to the first, the place in it, and the fade
+// weight.
+struct BlockAxis {
+  HWY_ALIGN float place[kBlockEdge];
+  HWY_ALIGN float weight[kBlockEdge];
+  HWY_ALIGN int32_t cell[kBlockEdge];
+  int32_t first = 0;  // lattice cell of plane 0
+  int corners = 0;    // lattice planes that the block needs
+};
+
+HWY_INLINE void setAxis(double origin, double cellSize, float step, BlockAxis& axis) {
+  const hn::CappedTag<float, kBlockEdge> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const CellPlace start = cellPlace(origin, cellSize);
+  axis.first = start.cell;
+  for (size_t n = 0; n < size_t(kBlockEdge); n += hn::Lanes(d)) {
+    const auto along = hn::Add(hn::Set(d, start.fraction), hn::Mul(hn::Iota(d, float(n)), hn::Set(d, step)));
+    const auto whole = hn::Floor(along);
+    const auto place = hn::Sub(along, whole);
+    hn::Store(place, d, axis.place + n);
+    hn::Store(fade(d, place), d, axis.weight + n);
+    hn::Store(hn::ConvertTo(di, whole), di, axis.cell + n);
+  }
+  // A fraction that rounds to 1 starts in the next cell.
+  const int32_t base = axis.cell[0];
+  if (base != 0) {
+    axis.first = cellAfter(axis.first, float(base));
+    for (int32_t& cell : axis.cell) cell -= base;
+  }
+  axis.corners = axis.cell[kBlockEdge - 1] + 2;
+}
+
+// Eight planes whose step is at most half a cell need at most 6 corners along x and y; along z a vector holds
+// as many corners as it has lanes, 4 for half a row or 8 for a whole one.
+constexpr int kMostCorners = 6;
+// Rows along z are worked on in vectors of 4 (half a row), 8 (a row) or 16 (the same row of two neighbouring
+// x planes).
+using Tag = hn::CappedTag<float, 16>;
+constexpr size_t kLanes = HWY_MAX_BYTES / sizeof(float) < 16 ? HWY_MAX_BYTES / sizeof(float) : 16;
+constexpr size_t kRowLanes = kLanes < 8 ? kLanes : 8;
+constexpr size_t kGroups = 8 / kRowLanes;
+constexpr size_t kPlanes = kLanes / kRowLanes;
+
+// The gradients at the block's lattice corners, weighted by the octave: [x][y][lane along z].
+struct Corners {
+  HWY_ALIGN float x[kMostCorners][kMostCorners][kRowLanes];
+  HWY_ALIGN float y[kMostCorners][kMostCorners][kRowLanes];
+  HWY_ALIGN float z[kMostCorners][kMostCorners][kRowLanes];
+};
+
+HWY_INLINE void gather(const NoiseOctave& octave, const BlockAxis& ax, const BlockAxis& ay, int32_t firstZ,
+                       Corners& out) {
+  const hn::CappedTag<float, kRowLanes> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  HWY_ALIGN uint32_t alongZ[kRowLanes];
+  for (size_t k = 0; k < kRowLanes; ++k)
+    alongZ[k] = uint32_t(shared::foldCell(int32_t(uint32_t(firstZ) + uint32_t(k)), octave.period)) * kHashZ;
+  const auto hz = hn::Xor(hn::Load(du, alongZ), hn::Set(du, octave.seed));
+  for (int x = 0; x < ax.corners; ++x) {
+    const uint32_t hx =
+        uint32_t(shared::foldCell(int32_t(uint32_t(ax.first) + uint32_t(x)), octave.period)) * kHashX;
+    for (int y = 0; y < ay.corners; ++y) {
+      const uint32_t hy =
+          uint32_t(shared::foldCell(int32_t(uint32_t(ay.first) + uint32_t(y)), octave.period)) * kHashY;
+      hn::Vec<decltype(d)> gx, gy, gz;
+      gradients(d, mixHash(du, hn::Xor(hz, hn::Set(du, hx ^ hy))), gx, gy, gz);
+      hn::Store(gx, d, out.x[x][y]);
+      hn::Store(gy, d, out.y[x][y]);
+      hn::Store(gz, d, out.z[x][y]);
+    }
+  }
+}
+
+#if HWY_MAX_BYTES >= 64
+using Row = hn::CappedTag<float, kRowLanes>;
+HWY_INLINE hn::Vec<Tag> loadPlanes(const float* first, const float* second) {
+  return hn::Combine(Tag(), hn::Load(Row(), second), hn::Load(Row(), first));
+}
+HWY_INLINE hn::Vec<Tag> setPlanes(const float* perPlane) {
+  return hn::Combine(Tag(), hn::Set(Row(), perPlane[1]), hn::Set(Row(), perPlane[0]));
+}
+HWY_INLINE void addToPlanes(hn::Vec<Tag> v, float* first) {
+  float* const second = first + kBlockEdge * kBlockEdge;
+  hn::StoreU(hn::Add(hn::LoadU(Row(), first), hn::LowerHalf(v)), Row(), first);
+  hn::StoreU(hn::Add(hn::LoadU(Row(), second), hn::UpperHalf(Row(), v)), Row(), second);
+}
+#else
+HWY_INLINE hn::Vec<Tag> loadPlanes(const float* first, const float*) { return hn::Load(Tag(), first); }
+HWY_INLINE hn::Vec<Tag> setPlanes(const float* perPlane) { return hn::Set(Tag(), perPlane[0]); }
+HWY_INLINE void addToPlanes(hn::Vec<Tag> v, float* first) {
+  hn::StoreU(hn::Add(hn::LoadU(Tag(), first), v), Tag(), first);
+}
+#endif
+
+// Adds one octave to the rows of one group along z (all of z, or half).
+HWY_INLINE void addGroup(const NoiseOctave& octave, const BlockAxis& ax, const BlockAxis& ay,
+                         const BlockAxis& az, size_t group, float* sums) {
+  using V = hn::Vec<Tag>;
+  const Tag d;
+  const size_t z0 = group * kRowLanes;
+  Corners corners;
+  gather(octave, ax, ay, int32_t(uint32_t(az.first) + uint32_t(az.cell[z0])), corners);
+
+  HWY_ALIGN int32_t lower[kLanes];
+  HWY_ALIGN int32_t upper[kLanes];
+  for (size_t lane = 0; lane < kLanes; ++lane) {
+    const size_t plane = lane / kRowLanes * kRowLanes;
+    lower[lane] = int32_t(plane) + az.cell[z0 + lane - plane] - az.cell[z0];
+    upper[lane] = lower[lane] + 1;
+  }
+  const auto toLower = hn::SetTableIndices(d, lower), toUpper = hn::SetTableIndices(d, upper);
+  const V dz0 = loadPlanes(az.place + z0, az.place + z0), dz1 = hn::Sub(dz0, hn::Set(d, 1.0f));
+  const V sz = loadPlanes(az.weight + z0, az.weight + z0);
+  const V weight = hn::Set(d, octave.weight * shared::kPerlinScale);
+
+  for (size_t i = 0; i < size_t(kBlockEdge); i += kPlanes) {
+    const int x = ax.cell[i], xNext = ax.cell[i + kPlanes - 1];
+    const V dx0 = setPlanes(ax.place + i), dx1 = hn::Sub(dx0, hn::Set(d, 1.0f)),
+            sx = setPlanes(ax.weight + i);
+    V u[kMostCorners], v[kMostCorners], w[kMostCorners];
+    for (int y = 0; y < ay.corners; ++y) {
+      u[y] = mix(hn::Mul(loadPlanes(corners.x[x][y], corners.x[xNext][y]), dx0),
+                 hn::Mul(loadPlanes(corners.x[x + 1][y], corners.x[xNext + 1][y]), dx1), sx);
+      v[y] = mix(loadPlanes(corners.y[x][y], corners.y[xNext][y]),
+                 loadPlanes(corners.y[x + 1][y], corners.y[xNext + 1][y]), sx);
+      w[y] = mix(loadPlanes(corners.z[x][y], corners.z[xNext][y]),
+                 loadPlanes(corners.z[x + 1][y], corners.z[xNext + 1][y]), sx);
+    }
+    for (size_t j = 0; j < size_t(kBlockEdge); ++j) {
+      const int y = ay.cell[j];
+      const V dy0 = hn::Set(d, ay.place[j]), dy1 = hn::Sub(dy0, hn::Set(d, 1.0f)),
+              sy = hn::Set(d, ay.weight[j]);
+      // At a corner k along z the four gradients of x and y make a value a + b · (z − k).
+      const V a = mix(hn::Add(u[y], hn::Mul(v[y], dy0)), hn::Add(u[y + 1], hn::Mul(v[y + 1], dy1)), sy);
+      const V b = mix(w[y], w[y + 1], sy);
+      const V below =
+          hn::Add(hn::TableLookupLanes(a, toLower), hn::Mul(hn::TableLookupLanes(b, toLower), dz0));
+      const V above =
+          hn::Add(hn::TableLookupLanes(a, toUpper), hn::Mul(hn::TableLookupLanes(b, toUpper), dz1));
+      addToPlanes(hn::Mul(weight, mix(below, above, sz)), sums + i * 64 + j * 8 + z0);
+    }
+  }
+}
+
+void addOnLattice(const NoiseOctave& octave, const Lattice& lattice, float* sums) {
+  BlockAxis ax, ay, az;
+  const float step = float(lattice.spacing / octave.cellSize);
+  setAxis(lattice.origin.x, octave.cellSize, step, ax);
+  setAxis(lattice.origin.y, octave.cellSize, step, ay);
+  setAxis(lattice.origin.z, octave.cellSize, step, az);
+  for (size_t group = 0; group < kGroups; ++group) addGroup(octave, ax, ay, az, group, sums);
+}
+
+// Dot product of corner (ox, oy, oz)'s gradient with the place relative to it, as shared::gradientDot.
+template <class D, class V, class VU>
+HWY_INLINE V cornerDot(D d, VU hash, V x, V y, V z) {
+  const hn::RebindToUnsigned<D> du;
+  const auto bit = [&](uint32_t mask, uint32_t value) HWY_ATTR {
+    return hn::RebindMask(d, hn::Eq(hn::And(hash, hn::Set(du, mask)), hn::Set(du, value)));
+  };
+  const V u = hn::IfThenElse(bit(8u, 0u), x, y);
+  const V v = hn::IfThenElse(bit(12u, 0u), y, hn::IfThenElse(bit(13u, 12u), x, z));
+  const VU signV = hn::And(hn::ShiftLeft<30>(hash), hn::Set(du, 0x80000000u));
+  return hn::Add(hn::Xor(u, hn::BitCast(d, hn::ShiftLeft<31>(hash))), hn::Xor(v, hn::BitCast(d, signV)));
+}
+
+// One vector of points, given as places relative to a first cell whose hashed coordinates are hx, hy, hz.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V noiseAt(D d, V x, V y, V z, uint32_t cellX, uint32_t cellY, uint32_t cellZ, uint32_t seed) {
+  const hn::RebindToUnsigned<D> du;
+  const hn::RebindToSigned<D> di;
+  const V one = hn::Set(d, 1.0f);
+  const V wx = hn::Floor(x), wy = hn::Floor(y), wz = hn::Floor(z);
+  const auto hashed = [&](V whole, uint32_t cell, uint32_t prime) HWY_ATTR {
+    const auto at = hn::Add(hn::BitCast(du, hn::ConvertTo(di, whole)), hn::Set(du, cell));
+    return hn::Mul(at, hn::Set(du, prime));
+  };
+  const auto hx0 = hashed(wx, cellX, kHashX), hx1 = hn::Add(hx0, hn::Set(du, kHashX));
+  const auto hy0 = hashed(wy, cellY, kHashY), hy1 = hn::Add(hy0, hn::Set(du, kHashY));
+  const auto plainZ = hashed(wz, cellZ, kHashZ), seeds = hn::Set(du, seed);
+  const auto hz0 = hn::Xor(plainZ, seeds), hz1 = hn::Xor(hn::Add(plainZ, hn::Set(du, kHashZ)), seeds);
+  const V x0 = hn::Sub(x, wx), y0 = hn::Sub(y, wy), z0 = hn::Sub(z, wz);
+  const V x1 = hn::Sub(x0, one), y1 = hn::Sub(y0, one), z1 = hn::Sub(z0, one);
+  const V sx = fade(d, x0), sy = fade(d, y0), sz = fade(d, z0);
+  const auto alongX = [&](auto hyz, V dy, V dz) HWY_ATTR {
+    return mix(cornerDot(d, mixHash(du, hn::Xor(hx0, hyz)), x0, dy, dz),
+               cornerDot(d, mixHash(du, hn::Xor(hx1, hyz)), x1, dy, dz), sx);
+  };
+  const V low = mix(alongX(hn::Xor(hy0, hz0), y0, z0), alongX(hn::Xor(hy1, hz0), y1, z0), sy);
+  const V high = mix(alongX(hn::Xor(hy0, hz1), y0, z1), alongX(hn::Xor(hy1, hz1), y1, z1), sy);
+  return hn::Mul(mix(low, high, sz), hn::Set(d, shared::kPerlinScale));
+}
+
+// Points from `first` on whose number is a multiple of the vector's lanes; returns how many were done.
+size_t addAtPoints(const NoiseOctave& octave, const Points& points, float* sums) {
+  const hn::ScalableTag<float> d;
+  const size_t lanes = hn::Lanes(d);
+  const CellPlace px = cellPlace(points.origin.x, octave.cellSize),
+                  py = cellPlace(points.origin.y, octave.cellSize),
+                  pz = cellPlace(points.origin.z, octave.cellSize);
+  const auto frequency = hn::Set(d, float(1.0 / octave.cellSize)), weight = hn::Set(d, octave.weight);
+  size_t n = 0;
+  for (; n + lanes <= points.count; n += lanes) {
+    const auto x = hn::Add(hn::Set(d, px.fraction), hn::Mul(hn::LoadU(d, points.x + n), frequency));
+    const auto y = hn::Add(hn::Set(d, py.fraction), hn::Mul(hn::LoadU(d, points.y + n), frequency));
+    const auto z = hn::Add(hn::Set(d, pz.fraction), hn::Mul(hn::LoadU(d, points.z + n), frequency));
+    const auto noise =
+        noiseAt(d, x, y, z, uint32_t(px.cell), uint32_t(py.cell), uint32_t(pz.cell), octave.seed);
+    hn::StoreU(hn::Add(hn::LoadU(d, sums + n), hn::Mul(weight, noise)), d, sums + n);
+  }
+  return n;
+}
+
+#else  // a machine without SSSE3: the same operations, one voxel at a time
+
+struct BlockAxis {
+  float place[kBlockEdge], weight[kBlockEdge];
+  int32_t cell[kBlockEdge];
+};
+
+void setAxis(double origin, double cellSize, float step, BlockAxis& axis) {
+  const CellPlace start = cellPlace(origin, cellSize);
+  for (int n = 0; n < kBlockEdge; ++n) {
+    const float along = start.fraction + float(n) * step;
+    const float whole = std::floor(along);
+    axis.place[n] = along - whole;
+    axis.weight[n] = shared::fadeQuintic(axis.place[n]);
+    axis.cell[n] = cellAfter(start.cell, whole);
+  }
+}
+
+float mix(float a, float b, float t) { return a + t * (b - a); }
+
+/// The gradient that shared::gradientDot uses for a hash.
+glm::vec3 gradientOf(const NoiseOctave& octave, int32_t x, int32_t y, int32_t z) {
+  const uint32_t hash =
+      shared::hashCell({shared::foldCell(x, octave.period), shared::foldCell(y, octave.period),
+                        shared::foldCell(z, octave.period)},
+                       octave.seed);
+  return {shared::gradientDot(hash, 1, 0, 0), shared::gradientDot(hash, 0, 1, 0),
+          shared::gradientDot(hash, 0, 0, 1)};
+}
+
+/// a + b · (z − k) at one corner k along z, mixed over the four corners of x and y.
+void mixCorners(const NoiseOctave& octave, const BlockAxis& ax, int i, const BlockAxis& ay, int j, int32_t k,
+                float& a, float& b) {
+  const float dx0 = ax.place[i], dx1 = dx0 - 1.0f, sx = ax.weight[i];
+  float u[2], v[2], w[2];
+  for (int y = 0; y < 2; ++y) {
+    const int32_t cellY = cellAfter(ay.cell[j], float(y));
+    const glm::vec3 g0 = gradientOf(octave, ax.cell[i], cellY, k);
+    const glm::vec3 g1 = gradientOf(octave, cellAfter(ax.cell[i], 1.0f), cellY, k);
+    u[y] = mix(g0.x * dx0, g1.x * dx1, sx);
+    v[y] = mix(g0.y, g1.y, sx);
+    w[y] = mix(g0.z, g1.z, sx);
+  }
+  const float dy0 = ay.place[j], dy1 = dy0 - 1.0f, sy = ay.weight[j];
+  a = mix(u[0] + v[0] * dy0, u[1] + v[1] * dy1, sy);
+  b = mix(w[0], w[1], sy);
+}
+
+void addOnLattice(const NoiseOctave& octave, const Lattice& lattice, float* sums) {
+  BlockAxis ax, ay, az;
+  const float step = float(lattice.spacing / octave.cellSize);
+  setAxis(lattice.origin.x, octave.cellSize, step, ax);
+  setAxis(lattice.origin.y, octave.cellSize, step, ay);
+  setAxis(lattice.origin.z, octave.cellSize, step, az);
+  const float weight = octave.weight * shared::kPerlinScale;
+  for (int i = 0; i < kBlockEdge; ++i)
+    for (int j = 0; j < kBlockEdge; ++j)
+      for (int k = 0; k < kBlockEdge; ++k) {
+        float a0, b0, a1, b1;
+        mixCorners(octave, ax, i, ay, j, az.cell[k], a0, b0);
+        mixCorners(octave, ax, i, ay, j, cellAfter(az.cell[k], 1.0f), a1, b1);
+        const float dz0 = az.place[k], dz1 = dz0 - 1.0f;
+        sums[i * 64 + j * 8 + k] += weight * mix(a0 + b0 * dz0, a1 + b1 * dz1, az.weight[k]);
+      }
+}
+
+size_t addAtPoints(const NoiseOctave&, const Points&, float*) { return 0; }
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace nephele
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace nephele {
+HWY_EXPORT(addOnLattice);
+HWY_EXPORT(addAtPoints);
+
+namespace {
+
+/// Points from `first` on, by the definition: the rest of a vector, and periods, whose folding costs a
+/// division a corner.
+void addByDefinition(const NoiseOctave& octave, const Points& points, size_t first, float* sums) {
+  const CellPlace px = cellPlace(points.origin.x, octave.cellSize),
+                  py = cellPlace(points.origin.y, octave.cellSize),
+                  pz = cellPlace(points.origin.z, octave.cellSize);
+  const float frequency = float(1.0 / octave.cellSize);
+  for (size_t n = first; n < points.count; ++n) {
+    const float x = px.fraction + points.x[n] * frequency;
+    const float y = py.fraction + points.y[n] * frequency;
+    const float z = pz.fraction + points.z[n] * frequency;
+    const float wx = std::floor(x), wy = std::floor(y), wz = std::floor(z);
+    sums[n] += octave.weight *
+               shared::perlinNoise({cellAfter(px.cell, wx), cellAfter(py.cell, wy), cellAfter(pz.cell, wz)},
+                                   {x - wx, y - wy, z - wz}, octave.period, octave.seed);
+  }
+}
+
+}  // namespace
+
+void addNoiseAtPoints(const NoiseOctave& octave, const Points& points, float* sums) {
+  const size_t done = octave.period == 0 ? HWY_DYNAMIC_DISPATCH(addAtPoints)(octave, points, sums) : 0;
+  addByDefinition(octave, points, done, sums);
+}
+
+void addNoiseOnLattice(const NoiseOctave* octaves, size_t count, const Lattice& lattice, float* sums) {
+  for (size_t n = 0; n < count; ++n) {
+    if (lattice.spacing <= 0.5 * octaves[n].cellSize)
+      HWY_DYNAMIC_DISPATCH(addOnLattice)(octaves[n], lattice, sums);
+    else
+      addNoiseAtPoints(octaves[n], LatticePoints(lattice).points(), sums);
+  }
+}
+
+}  // namespace nephele
+#endif
