@@ -118,7 +118,7 @@ void hashTransform(Hasher& hasher, const openvdb::math::Transform& transform) {
 std::string contentHash(const openvdb::GridBase& grid) {
   Hasher hasher;
   hasher.text(grid.getName());
-  hasher.text(grid.valueType());
+  hasher.text(grid.type());
   hasher.text(openvdb::GridBase::gridClassToString(grid.getGridClass()));
   hashTransform(hasher, grid.transform());
   using Hashed = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,

@@ -1,8 +1,6 @@
 // Reads and writes .vdb files through OpenVDB. Depends on base and OpenVDB.
 #include "volume/vdb_file.h"
 
-#include <openvdb/io/DelayedLoadMetadata.h>
-
 #include <charconv>
 #include <filesystem>
 #include <mutex>
@@ -73,12 +71,7 @@ std::string textOf(const openvdb::Metadata& value) {
 
 void initializeOpenVdb() {
   static std::once_flag once;
-  std::call_once(once, [] {
-    openvdb::initialize();
-    // Where this type is known, OpenVDB compresses every leaf a second time on writing, for loading on
-    // demand, which is off here and in Blender.
-    openvdb::io::DelayedLoadMetadata::unregisterType();
-  });
+  std::call_once(once, [] { openvdb::initialize(); });
 }
 
 uint64_t writeVdb(const std::string& path, const openvdb::GridCPtrVec& grids, const Provenance& provenance) {

@@ -1,0 +1,192 @@
+// Scenes: defaults of the contract, both ways through YAML, every refusal.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "base/error.h"
+#include "scene/scene.h"
+#include "tests/scratch_folder.h"
+
+namespace nephele {
+namespace {
+
+Scene sceneOf(const std::string& text) {
+  Diagnostics out;
+  const yaml::NodePtr node = yaml::parse(text, "s");
+  const Scene scene = readScene(*node, out);
+  out.throwIfAny();
+  return scene;
+}
+
+std::string complaintOf(const std::string& text) {
+  try {
+    sceneOf(text);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(Scene, DefaultsAreTheContracts) {
+  const Scene scene = sceneOf("");
+  EXPECT_FALSE(scene.camera || scene.medium);
+  ASSERT_EQ(scene.lights.size(), 1u);
+  const Sun sun = std::get<Sun>(scene.lights[0]);
+  const glm::dvec3 expected = glm::normalize(glm::dvec3(0.3, 0.8, 0.5));
+  EXPECT_NEAR(glm::length(sun.toLight - expected), 0.0, 1e-15);
+  EXPECT_NEAR(glm::length(sun.toLight), 1.0, 1e-15);
+  EXPECT_EQ(scene.look, Look::physical);
+  const Scene filled = sceneOf("camera: {}\nmedium: {}\n");
+  EXPECT_EQ(filled.camera->fov, 35.0 * (std::numbers::pi / 180.0));
+  EXPECT_EQ(filled.camera->fov, Camera{}.fov);
+  EXPECT_FALSE(filled.cameraUpGiven);
+  EXPECT_EQ(filled.medium->sigmaS, (Rgb{8.0, 8.0, 8.0}));
+  EXPECT_TRUE(sceneOf("lights: []").lights.empty());
+}
+
+TEST(Scene, ReadsEveryKey) {
+  const Scene scene = sceneOf(
+      "camera: { position: [1, 2, 3], target: [4, 5, 6], up: [0, 1, 0], fov: 90 }\n"
+      "medium: { sigma_s: 2, sigma_a: [0.1, 0.2, 0.3], g: -0.5 }\n"
+      "octaves: { count: 3, a: 0.1, b: 0.2, c: 0.3 }\n"
+      "lights:\n  - sun: { to_light: [0, 0, 5], irradiance: 2 }\n"
+      "  - point: { position: [7, 8, 9], intensity: [1, 2, 3] }\n"
+      "environment: { constant: [0.5, 0.6, 0.7], show: true }\n"
+      "background: { bottom: 0.25, top: [0.1, 0.2, 0.3] }\n"
+      "look: report\nmarch: { step: 0.25, shadow_step: 2 }\n");
+  EXPECT_EQ(scene.camera->target, glm::dvec3(4, 5, 6));
+  EXPECT_TRUE(scene.cameraUpGiven);
+  EXPECT_NEAR(scene.camera->fov, std::numbers::pi / 2.0, 1e-15);
+  EXPECT_EQ(scene.medium->sigmaS, (Rgb{2, 2, 2}));
+  EXPECT_EQ(scene.medium->sigmaA, (Rgb{0.1, 0.2, 0.3}));
+  EXPECT_EQ(scene.octaves.count, 3);
+  EXPECT_EQ(std::get<Sun>(scene.lights[0]).toLight, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(std::get<PointLight>(scene.lights[1]).intensity, (Rgb{1, 2, 3}));
+  EXPECT_TRUE(scene.environment.show);
+  EXPECT_EQ(scene.backdrop.bottom, (Rgb{0.25, 0.25, 0.25}));
+  EXPECT_EQ(scene.look, Look::report);
+  EXPECT_EQ(scene.march.stepVoxels, 0.25);
+  EXPECT_EQ(scene.march.shadowStepVoxels, 2.0);
+}
+
+void expectEqual(const Scene& a, const Scene& b) {
+  ASSERT_EQ(a.camera.has_value(), b.camera.has_value());
+  if (a.camera) {
+    EXPECT_EQ(a.camera->position, b.camera->position);
+    EXPECT_EQ(a.camera->target, b.camera->target);
+    EXPECT_EQ(a.camera->up, b.camera->up);
+    EXPECT_EQ(a.camera->fov, b.camera->fov);
+  }
+  EXPECT_EQ(a.cameraUpGiven, b.cameraUpGiven);
+  ASSERT_EQ(a.medium.has_value(), b.medium.has_value());
+  if (a.medium) {
+    EXPECT_EQ(a.medium->sigmaS, b.medium->sigmaS);
+    EXPECT_EQ(a.medium->sigmaA, b.medium->sigmaA);
+    EXPECT_EQ(a.medium->g, b.medium->g);
+  }
+  EXPECT_EQ(a.octaves.count, b.octaves.count);
+  EXPECT_EQ(a.octaves.a, b.octaves.a);
+  EXPECT_EQ(a.octaves.b, b.octaves.b);
+  EXPECT_EQ(a.octaves.c, b.octaves.c);
+  ASSERT_EQ(a.lights.size(), b.lights.size());
+  for (size_t i = 0; i < a.lights.size(); ++i) {
+    ASSERT_EQ(a.lights[i].index(), b.lights[i].index());
+    if (const Sun* sun = std::get_if<Sun>(&a.lights[i])) {
+      EXPECT_EQ(sun->toLight, std::get<Sun>(b.lights[i]).toLight);
+      EXPECT_EQ(sun->irradiance, std::get<Sun>(b.lights[i]).irradiance);
+    } else {
+      EXPECT_EQ(std::get<PointLight>(a.lights[i]).position, std::get<PointLight>(b.lights[i]).position);
+      EXPECT_EQ(std::get<PointLight>(a.lights[i]).intensity, std::get<PointLight>(b.lights[i]).intensity);
+    }
+  }
+  EXPECT_EQ(a.environment.constant, b.environment.constant);
+  EXPECT_EQ(a.environment.show, b.environment.show);
+  EXPECT_EQ(a.backdrop.bottom, b.backdrop.bottom);
+  EXPECT_EQ(a.backdrop.top, b.backdrop.top);
+  EXPECT_EQ(a.look, b.look);
+  EXPECT_EQ(a.march.stepVoxels, b.march.stepVoxels);
+  EXPECT_EQ(a.march.shadowStepVoxels, b.march.shadowStepVoxels);
+}
+
+TEST(Scene, WrittenAndReadIsTheSame) {
+  for (const char* text :
+       {"", "lights: []\n", "look: report\ncamera: { fov: 1e-3 }\n",
+        "camera: { position: [0.1, -1e-9, 1e9], up: [1, 1, 0], fov: 77.7 }\nmedium: { sigma_s: 0.3, g: 0.999 "
+        "}\n"
+        "octaves: { count: 2, a: 0.3 }\n"
+        "lights:\n  - sun: { to_light: [1, 2, 3], irradiance: [0.1, 0.2, 0.3] }\n"
+        "  - sun: { to_light: [1e-200, 0, 3e-200] }\n  - point: { position: [1, 2, 3], intensity: 0.1 }\n"
+        "environment: { constant: 0.7, show: true }\nbackground: { top: 0.1 }\nmarch: { step: 0.3 }\n"}) {
+    const Scene scene = sceneOf(text);
+    expectEqual(scene, sceneOf(writeScene(scene)));
+  }
+}
+
+TEST(Scene, EveryAngleOfAFileSurvivesWriting) {
+  for (double fov = 0.1; fov < 180.0; fov += 0.37) {
+    const Scene scene = sceneOf("camera: { fov: " + std::to_string(fov) + " }");
+    EXPECT_EQ(sceneOf(writeScene(scene)).camera->fov, scene.camera->fov) << fov;
+  }
+}
+
+TEST(Scene, Refusals) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"camra: {}", "s:1:1: error: unknown key 'camra' in the scene; did you mean 'camera'?"},
+      {"[1]", "s:1:1: error: the scene must be a map, found a list"},
+      {"camera: { position: [1, 2, 3], target: [1, 2, 3] }",
+       "s:1:11: error: the camera stands on its target; give 'position' and 'target' apart"},
+      {"camera: { up: [0, 0, 0] }", "s:1:11: error: 'up' has no length"},
+      {"camera: { position: [0, 0, 5], up: [0, 0, -2] }",
+       "s:1:32: error: 'up' points along the view; give another axis, such as [0, 1, 0] or [1, 0, 0]"},
+      {"camera: { fov: 180 }", "s:1:16: error: 'fov' must be greater than 0 and less than 180, found 180"},
+      {"camera: { fov: 0 }", "s:1:16: error: 'fov' must be greater than 0 and less than 180, found 0"},
+      {"camera: { position: [1e300, 0, 0] }",
+       "s:1:22: error: 'position' must be -1e+15 to 1e+15, found 1e300"},
+      {"camera: { position: [1, .nan, 0] }",
+       "s:1:25: error: 'position' must be a finite number, found '.nan'"},
+      {"medium: { sigma_s: -1 }", "s:1:20: error: 'sigma_s' (or a list of 3) must be 0 to 1e+15, found -1"},
+      {"medium: { g: 1 }", "s:1:14: error: 'g' must be greater than -1 and less than 1, found 1"},
+      {"octaves: { a: 1.5 }", "s:1:15: error: 'a' must be 0 to 1, found 1.5"},
+      {"octaves: { count: 17 }", "s:1:19: error: 'count' must be 0 to 16, found 17"},
+      {"lights: { sun: {} }", "s:1:9: error: 'lights' must be a list, found a map; write [] for no light"},
+      {"lights:", "s:1:1: error: 'lights' must be a list, found nothing; write [] for no light"},
+      {"lights: [sun]",
+       "s:1:10: error: a light must be a map of one key, 'sun' or 'point'; such as: "
+       "- sun: { to_light: [0, 0, 1] }"},
+      {"lights: [{ son: {} }]", "s:1:12: error: unknown key 'son' in 'lights'; did you mean 'sun'?"},
+      {"lights: [{ sun: { to_light: [0, 0, 0] } }]",
+       "s:1:19: error: 'to_light' has no length; it points from the cloud to the sun"},
+      {"lights: [sun: {}, sun: {}, sun: {}, sun: {}, sun: {}, sun: {}, sun: {}, sun: {}, sun: {}]",
+       "s:1:82: error: at most 8 lights are rendered, found 9"},
+      {"environment: { ramp: 1 }",
+       "s:1:16: error: an environment by 'ramp' is not built yet; use 'constant'"},
+      {"environment: { exr: a.exr }",
+       "s:1:16: error: an environment by 'exr' is not built yet; use 'constant'"},
+      {"environment: { show: 1 }", "s:1:22: error: 'show' must be true or false, found '1'"},
+      {"look: pretty", "s:1:7: error: 'look' must be one of physical, report, found 'pretty'"},
+      {"march: { step: 0 }", "s:1:16: error: 'step' must be 0.01 to 100, found 0"}};
+  for (const auto& [text, sentence] : cases) EXPECT_EQ(complaintOf(text), sentence) << text;
+}
+
+TEST(Scene, AllErrorsOfOneFileAtOnce) {
+  EXPECT_EQ(complaintOf("look: pretty\ncamera: { fov: 500 }\nmarch: { stp: 1 }\n"),
+            "s:1:7: error: 'look' must be one of physical, report, found 'pretty'\n"
+            "s:2:16: error: 'fov' must be greater than 0 and less than 180, found 500\n"
+            "s:3:10: error: unknown key 'stp' in 'march'; did you mean 'step'?");
+}
+
+TEST(Scene, LoadsTheSceneOfAnyFileThatHasOne) {
+  const ScratchFolder scratch;
+  const std::string pipeline = scratch.write("p.yaml", "assets: { a: {} }\nscene: { look: report }\n");
+  EXPECT_EQ(loadScene(pipeline).look, Look::report);
+  EXPECT_EQ(loadScene(scratch.write("s.yaml", "look: report\n")).look, Look::report);
+  EXPECT_EQ(loadScene(scratch.write("e.yaml", "scene:\n")).look, Look::physical);
+  EXPECT_THROW(loadScene(scratch.write("w.yaml", "scene: { lok: report }\n")), InputError);
+  EXPECT_THROW(loadScene(scratch.write("a.yaml", "assets: {}\n")), InputError);
+  EXPECT_THROW(loadScene(scratch.file("missing.yaml")), InputError);
+}
+
+}  // namespace
+}  // namespace nephele

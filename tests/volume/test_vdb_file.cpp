@@ -1,0 +1,214 @@
+// Writing, reading, content hashes and info.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <csignal>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "tests/scratch_folder.h"
+#include "tests/volume/test_grids.h"
+#include "volume/info.h"
+
+namespace nephele {
+namespace {
+
+openvdb::GridBase::Ptr readBack(const std::string& path) { return readVdb(path).grids->at(0); }
+
+TEST(VdbFile, ContentSurvivesTheDisk) {
+  const ScratchFolder scratch;
+  const auto grid = randomGrid({-100, 3, 8}, 40);
+  grid->fill(openvdb::CoordBBox({128, 128, 128}, {255, 255, 255}), 0.25f);  // a tile of the middle level
+  ASSERT_GT(grid->tree().activeTileCount(), 0u);
+  const uint64_t bytes = writeVdb(scratch.file("a.vdb"), {grid}, {});
+  EXPECT_EQ(bytes, std::filesystem::file_size(scratch.file("a.vdb")));
+  EXPECT_EQ(contentHash(*readBack(scratch.file("a.vdb"))), contentHash(*grid));
+  EXPECT_EQ(contentHash(*grid).size(), 32u);
+  EXPECT_EQ(scratch.fileCount(), 1);
+}
+
+TEST(VdbFile, ProvenanceIsMetadata) {
+  const ScratchFolder scratch;
+  Provenance provenance;
+  provenance.upAxis = 'y';
+  provenance.recipeHash = "abc";
+  provenance.seed = -5000000000;
+  provenance.frame = 12;
+  provenance.hasMedium = true;
+  provenance.sigmaS = {0.1, 2.0, 1.0 / 3.0};
+  provenance.sigmaA = {0.0, 0.5, 1e-9};
+  provenance.g = 0.123456789012;
+  const auto grid = randomGrid({0, 0, 0}, 2);
+  write(scratch.file("a.vdb"), grid, provenance);
+  const FileInfo info = inspectFile(scratch.file("a.vdb"));
+  const std::map<std::string, std::string> expected{
+      {"creator", creatorName()},     {"up_axis", "y"},       {"recipe_hash", "abc"},
+      {"seed", "-5000000000"},        {"frame", "12"},        {"sigma_s", "[0.1, 2, 0.3333333333333333]"},
+      {"sigma_a", "[0, 0.5, 1e-09]"}, {"g", "0.123456789012"}};
+  EXPECT_EQ(info.metadata, expected);
+  EXPECT_EQ(info.grids[0].metadata.count("file_delayed_load"), 0u);
+  write(scratch.file("b.vdb"), grid);
+  EXPECT_EQ(inspectFile(scratch.file("b.vdb")).metadata.count("sigma_s"), 0u);
+  EXPECT_EQ(creatorName().rfind("Nephele ", 0), 0u);
+}
+
+TEST(VdbFile, WhatCannotBeWrittenLeavesNothing) {
+  const ScratchFolder scratch;
+  EXPECT_THROW(write(scratch.file("missing/a.vdb"), randomGrid({0, 0, 0}, 2)), WorldError);
+  EXPECT_EQ(scratch.fileCount(), 0);
+}
+
+TEST(VdbFile, AFullDiskLeavesNothing) {
+  const ScratchFolder scratch;
+  const auto grid = randomGrid({0, 0, 0}, 32);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  constexpr rlim_t kRoomBytes = 20000;  // the grid takes about 130 kB
+  const rlimit full{kRoomBytes, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &full);
+  EXPECT_THROW(write(scratch.file("a.vdb"), grid), WorldError);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(scratch.fileCount(), 0);
+}
+
+TEST(VdbFile, DamagedContentIsTheUsersFault) {
+  const ScratchFolder scratch;
+  write(scratch.file("a.vdb"), randomGrid({0, 0, 0}, 16));
+  const std::string whole = readWhole(scratch.file("a.vdb"));
+  EXPECT_THROW(readVdb(scratch.write("cut.vdb", whole.substr(0, whole.size() / 2))), InputError);
+  EXPECT_THROW(readVdb(scratch.file("missing.vdb")), InputError);
+  std::string unknownType = whole;
+  const size_t at = unknownType.find("Tree_float");
+  unknownType[at + 5] = 'q';
+  EXPECT_THROW(readVdb(scratch.write("type.vdb", unknownType)), InputError);
+}
+
+TEST(ContentHash, SeesWhatMatters) {
+  const auto grid = randomGrid({0, 0, 0}, 20);
+  const std::string hash = contentHash(*grid);
+  const auto changed = [&](auto change) {
+    const auto copy = grid->deepCopy();
+    change(*copy);
+    return contentHash(*copy) != hash;
+  };
+  EXPECT_FALSE(changed([](openvdb::FloatGrid&) {}));
+  EXPECT_TRUE(changed([](auto& g) { g.setName("smoke"); }));
+  EXPECT_TRUE(changed([](auto& g) { g.setGridClass(openvdb::GRID_UNKNOWN); }));
+  EXPECT_TRUE(changed([](auto& g) { g.setTransform(openvdb::math::Transform::createLinearTransform(0.2)); }));
+  EXPECT_TRUE(changed([](auto& g) { g.tree().setValue({3, 3, 3}, 7.0f); }));
+  EXPECT_TRUE(changed([](auto& g) { g.tree().setActiveState({3, 3, 3}, false); }));
+  EXPECT_TRUE(changed([](auto& g) { g.tree().setValueOff({23, 3, 3}, 1.0f); }));  // a sampler reads it
+  EXPECT_TRUE(changed([](auto& g) { g.tree().setValue({500, 0, 0}, 1.0f); }));
+  EXPECT_TRUE(changed([](auto& g) { g.tree().addTile(1, {800, 0, 0}, 1.0f, true); }));
+  EXPECT_FALSE(changed([](auto& g) { g.tree().addTile(1, {800, 0, 0}, 1.0f, false); }));
+  EXPECT_FALSE(changed([](auto& g) {
+    g.tree().setValueOff({800, 0, 0}, 1.0f);
+  }));  // a leaf that nothing reads
+  EXPECT_FALSE(changed([](auto& g) { g.insertMeta("note", openvdb::StringMetadata("x")); }));
+}
+
+TEST(ContentHash, MinusZeroIsZero) {
+  const auto plus = randomGrid({0, 0, 0}, 4), minus = randomGrid({0, 0, 0}, 4);
+  plus->tree().setValue({1, 1, 1}, 0.0f);
+  minus->tree().setValue({1, 1, 1}, -0.0f);
+  plus->tree().addTile(1, {80, 0, 0}, 0.0f, true);
+  minus->tree().addTile(1, {80, 0, 0}, -0.0f, true);
+  EXPECT_EQ(contentHash(*plus), contentHash(*minus));
+  const auto empty = [] { return openvdb::GridBase::createGrid(openvdb::Vec3SGrid::gridType()); };
+  const auto a = openvdb::gridPtrCast<openvdb::Vec3SGrid>(empty()),
+             b = openvdb::gridPtrCast<openvdb::Vec3SGrid>(empty());
+  a->tree().setValue({0, 0, 0}, {1.0f, 0.0f, 2.0f});
+  b->tree().setValue({0, 0, 0}, {1.0f, -0.0f, 2.0f});
+  EXPECT_EQ(contentHash(*a), contentHash(*b));
+  b->tree().setValue({0, 0, 0}, {1.0f, 0.5f, 2.0f});
+  EXPECT_NE(contentHash(*a), contentHash(*b));
+}
+
+TEST(ContentHash, IsTheSameOnAnyNumberOfThreadsAndInAnyOrderOfFilling) {
+  const auto grid = randomGrid({-64, -64, -64}, 90);
+  std::vector<std::string> hashes;
+  for (const size_t threads : {size_t{1}, size_t{2}, size_t{7}}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    hashes.push_back(contentHash(*grid));
+  }
+  auto reversed = makeFogGrid("density", 0.1, false);
+  std::vector<openvdb::Coord> order;
+  for (auto value = grid->cbeginValueOn(); value; ++value) order.push_back(value.getCoord());
+  auto from = grid->getConstAccessor();
+  auto to = reversed->getAccessor();
+  for (auto c = order.rbegin(); c != order.rend(); ++c) to.setValue(*c, from.getValue(*c));
+  hashes.push_back(contentHash(*reversed));
+  for (const std::string& hash : hashes) EXPECT_EQ(hash, hashes[0]);
+}
+
+TEST(ContentHash, EveryUsualTypeHasOneAndPointsHaveNone) {
+  initializeOpenVdb();
+  // By name from OpenVDB's table: making them by type would instantiate each anew, at seconds of compilation.
+  const std::string types[] = {
+      openvdb::FloatGrid::gridType(), openvdb::DoubleGrid::gridType(), openvdb::Int32Grid::gridType(),
+      openvdb::Int64Grid::gridType(), openvdb::BoolGrid::gridType(),   openvdb::MaskGrid::gridType(),
+      openvdb::Vec3SGrid::gridType(), openvdb::Vec3DGrid::gridType(),  openvdb::Vec3IGrid::gridType()};
+  std::set<std::string> hashes;
+  for (const std::string& type : types) hashes.insert(contentHash(*openvdb::GridBase::createGrid(type)));
+  EXPECT_EQ(hashes.size(), std::size(types));  // the type is part of it
+  EXPECT_EQ(hashes.count(""), 0u);
+  const auto flags = openvdb::gridPtrCast<openvdb::BoolGrid>(openvdb::GridBase::createGrid(types[4]));
+  flags->tree().setValue({1, 2, 3}, true);
+  const std::string hash = contentHash(*flags);
+  flags->tree().setValue({1, 2, 4}, true);
+  EXPECT_NE(contentHash(*flags), hash);
+  EXPECT_EQ(contentHash(*openvdb::GridBase::createGrid("Tree_ptdataidx32_5_4_3")), "");
+}
+
+TEST(Info, NumbersOfAKnownGrid) {
+  const ScratchFolder scratch;
+  const auto grid = makeFogGrid("density", 0.5, true);
+  grid->denseFill(openvdb::CoordBBox({-2, 0, 1}, {7, 4, 3}), 1.0f);
+  grid->tree().addTile(1, {3000, 0, 0}, 1.0f, true);
+  write(scratch.file("a.vdb"), grid);
+  const FileInfo info = inspectFile(scratch.file("a.vdb"));
+  const GridInfo& g = info.grids.at(0);
+  EXPECT_EQ(g.name, "density");
+  EXPECT_EQ(g.type, "float");
+  EXPECT_EQ(g.gridClass, "fog volume");
+  EXPECT_TRUE(g.half);
+  EXPECT_EQ(g.activeVoxels, 10u * 5u * 3u + 512u);
+  EXPECT_EQ(g.leaves, 2u);
+  EXPECT_EQ(g.tiles, 1u);
+  EXPECT_EQ(g.boxMin, glm::ivec3(-2, 0, 0));
+  EXPECT_EQ(g.boxMax, glm::ivec3(3008, 8, 8));
+  EXPECT_EQ(g.denseBytes, 3010u * 8u * 8u * 4u);
+  EXPECT_EQ(g.worldFromIndex[0][0], 0.5);
+  const std::string text = infoAsText(info);
+  EXPECT_NE(text.find("warning: 3010 voxels along x, above 2048"), std::string::npos) << text;
+  EXPECT_EQ(text.find("empty"), std::string::npos);
+}
+
+TEST(Info, JsonHasTheContractsKeys) {
+  const ScratchFolder scratch;
+  const auto grid = makeFogGrid("density", 0.5, false);
+  grid->transform().postTranslate({1.0, 2.0, 3.0});
+  write(scratch.file("a.vdb"), grid);
+  const FileInfo info = inspectFile(scratch.file("a.vdb"));
+  const auto json = nlohmann::json::parse(infoAsJson({info}));
+  EXPECT_EQ(json.at("path"), scratch.file("a.vdb"));
+  EXPECT_EQ(json.at("file_bytes"), std::filesystem::file_size(scratch.file("a.vdb")));
+  const auto g = json.at("grids").at(0);
+  for (const char* key : {"name", "type", "class", "voxels_active", "leaves", "tiles", "box_min", "box_max",
+                          "transform", "bytes", "dense_bytes", "content_hash", "metadata", "half"})
+    EXPECT_TRUE(g.contains(key)) << key;
+  EXPECT_EQ(g.at("transform"), nlohmann::json::parse("[[0.5,0,0,1],[0,0.5,0,2],[0,0,0.5,3],[0,0,0,1]]"));
+  EXPECT_EQ(g.at("box_min"), g.at("box_max"));
+  EXPECT_EQ(g.at("dense_bytes"), 0);
+  EXPECT_EQ(nlohmann::json::parse(infoAsJson({info, info})).size(), 2u);
+  EXPECT_NE(infoAsText(info).find("warning: the grid is empty"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace nephele
