@@ -8,6 +8,7 @@
 #include "bake/fields/perlin.h"
 #include "bake/fields/shared_text.h"
 #include "bake/fields/table.h"
+#include "bake/fields/worley_kernels.h"
 #include "bench/fields.h"
 
 namespace nephele::bench {
@@ -47,6 +48,12 @@ void perlinLattice(benchmark::State& state) {
               [&](const Lattice& at, float* v) { addNoiseOnLattice(list.data(), list.size(), at, v); });
 }
 BENCHMARK(perlinLattice)->Arg(1)->Arg(5)->ArgName("octaves");
+
+void worleyLattice(benchmark::State& state) {
+  const WorleyNoise noise{kFeature, 1.0f, 1u, 0, state.range(0) == 1 ? WorleyOutput::f1 : WorleyOutput::f2};
+  overLattice(state, [&](const Lattice& at, float* v) { worleyOnLattice(noise, at, v); });
+}
+BENCHMARK(worleyLattice)->Arg(1)->Arg(2)->ArgName("rank");
 
 void perlinPoints(benchmark::State& state) {
   const auto list = octaves(state.range(0));

@@ -1,12 +1,9 @@
-// Gradient noise over points, its bounds, and the rows perlin and fbm. Depends on field.h, table.h and shared
-// text.
+// Octaves of gradient noise and their bounds. Depends on field.h, table.h and shared text.
 #include "bake/fields/perlin.h"
 
 #include <cmath>
 
 #include "bake/fields/cell_place.h"
-#include "bake/fields/noise_kernels.h"
-#include "bake/fields/rows.h"
 #include "bake/fields/shared_text.h"
 
 namespace nephele {
@@ -59,71 +56,6 @@ std::vector<NoiseOctave> fbmOctaves(double cellSize, int64_t octaves, double lac
     cells *= lacunarity;
   }
   return list;
-}
-
-namespace {
-
-/// Σ of octaves: the row perlin is one of them.
-class NoiseField final : public Field {
- public:
-  explicit NoiseField(std::vector<NoiseOctave> octaves) : octaves_(std::move(octaves)) {}
-
-  void evaluate(const Points& points, float* values) const override {
-    std::fill_n(values, points.count, 0.0f);
-    for (const NoiseOctave& octave : octaves_) addNoiseAtPoints(octave, points, values);
-  }
-
-  void evaluate(const Lattice& lattice, float* values) const override {
-    std::fill_n(values, kBlockPoints, 0.0f);
-    addNoiseOnLattice(octaves_.data(), octaves_.size(), lattice, values);
-  }
-
-  Interval bounds(const Box& box) const override {
-    Interval sum{};
-    for (const NoiseOctave& octave : octaves_) sum = sum + boundNoise(octave, box);
-    return sum;
-  }
-
-  Box support() const override { return octaves_.empty() ? nothing() : Box{}; }
-
- private:
-  std::vector<NoiseOctave> octaves_;
-};
-
-uint32_t mixedSeed(const Arguments& a, const BuildContext& context) {
-  return shared::hashCell({int32_t(uint32_t(a.integer("seed"))), 0, 0}, context.seed);
-}
-
-std::optional<std::pair<std::string_view, std::string>> validatePeriod(const Arguments& a) {
-  const double lacunarity = a.number("lacunarity");
-  if (a.integer("period") > 0 && lacunarity != std::floor(lacunarity))
-    return {{"lacunarity", "a noise with a period needs a whole lacunarity, or its octaves do not close"}};
-  return std::nullopt;
-}
-
-}  // namespace
-
-FieldRow perlinRow() {
-  return {"perlin",
-          "Gradient noise in [-1, 1]: 0 at the corners of its cells, smooth between.",
-          {kCellSize, kSeed, kPeriod},
-          [](const Arguments& a, const BuildContext& context) -> FieldPtr {
-            return std::make_shared<NoiseField>(fbmOctaves(a.number("cell_size"), 1, 2.0, 0.5,
-                                                           a.integer("period"), mixedSeed(a, context),
-                                                           context, "perlin"));
-          }};
-}
-
-FieldRow fbmRow() {
-  return {"fbm",
-          "Fractal sum of gradient noise in [-1, 1]; octaves finer than the grid can hold are left out.",
-          {kCellSize, kOctaves, kLacunarity, kGain, kSeed, kPeriod},
-          [](const Arguments& a, const BuildContext& context) -> FieldPtr {
-            return std::make_shared<NoiseField>(
-                fbmOctaves(a.number("cell_size"), a.integer("octaves"), a.number("lacunarity"),
-                           a.number("gain"), a.integer("period"), mixedSeed(a, context), context, "fbm"));
-          },
-          validatePeriod};
 }
 
 }  // namespace nephele

@@ -34,7 +34,12 @@ inline const Parameter kGain{
     "gain", ParameterType::number, "How much weaker each layer is.", Value{0.5}, {0.0, 1.0, true, false}};
 
 FieldRow perlinRow();
+FieldRow worleyRow();
+FieldRow perlinWorleyRow();
+FieldRow valueRow();
 FieldRow fbmRow();
+FieldRow ridgedRow();
+FieldRow billowRow();
 FieldRow warpRow();
 FieldRow sphereRow();
 FieldRow constantRow();

@@ -6,9 +6,10 @@
 namespace nephele {
 
 std::span<const FieldRow> fieldTable() {
-  static const std::vector<FieldRow> kRows{perlinRow(),   fbmRow(),           warpRow(),  sphereRow(),
-                                           constantRow(), heightProfileRow(), remapRow(), addRow(),
-                                           multiplyRow(), minRow(),           maxRow(),   mixRow()};
+  static const std::vector<FieldRow> kRows{
+      perlinRow(), worleyRow(), perlinWorleyRow(), valueRow(),         fbmRow(),   ridgedRow(), billowRow(),
+      warpRow(),   sphereRow(), constantRow(),     heightProfileRow(), remapRow(), addRow(),    multiplyRow(),
+      minRow(),    maxRow(),    mixRow()};
   return kRows;
 }
 

@@ -58,3 +58,56 @@ NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
   float y1 = x01 + sy * (x11 - x01);
   return (y0 + sz * (y1 - y0)) * kPerlinScale;
 }
+
+// Value noise in [−1, 1]: one random value a lattice point, quintic fade between.
+NPH_FN float valueNoise(ivec3 cell, vec3 f, int period, uint seed) {
+  float corner[8];
+  for (int c = 0; c < 8; ++c) {
+    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
+    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    // 2^-23: the hash's upper 24 bits become [0, 2).
+    corner[c] = float(hashCell(at, seed) >> 8u) * 1.1920929e-7f - 1.0f;
+  }
+  float sx = fadeQuintic(f.x);
+  float sy = fadeQuintic(f.y);
+  float sz = fadeQuintic(f.z);
+  float x00 = corner[0] + sx * (corner[1] - corner[0]);
+  float x10 = corner[2] + sx * (corner[3] - corner[2]);
+  float x01 = corner[4] + sx * (corner[5] - corner[4]);
+  float x11 = corner[6] + sx * (corner[7] - corner[6]);
+  float y0 = x00 + sy * (x10 - x00);
+  float y1 = x01 + sy * (x11 - x01);
+  return y0 + sz * (y1 - y0);
+}
+
+// The one feature point of a cell, in [0, 1)³ from its corner: the centre for jitter 0, anywhere for 1. Multiples of 1/2048
+// (along z 1/1024), which one hash holds.
+NPH_FN vec3 featurePoint(ivec3 cell, float jitter, int period, uint seed) {
+  uint h = hashCell(ivec3(foldCell(cell.x, period), foldCell(cell.y, period), foldCell(cell.z, period)), seed);
+  vec3 place = vec3(float(h & 0x7ffu), float((h >> 11u) & 0x7ffu), float((h >> 22u) << 1u)) * (1.0f / 2048.0f);
+  return vec3(0.5f) + jitter * (place - vec3(0.5f));
+}
+
+// Cellular noise: distances in cells to the nearest and second nearest of all feature points [Worley 1996]. Both are at most
+// √3: the worst place is a lattice point whose eight cells hold their points in the far corners. Cells two away are
+// therefore looked at, where they can be near enough; those three away never are.
+NPH_FN vec2 worleyDistances(ivec3 cell, vec3 f, float jitter, int period, uint seed) {
+  float first = 9.0f;  // squared; above 3
+  float second = 9.0f;
+  for (int x = -2; x <= 2; ++x) {
+    float gapX = max(max(float(x) - f.x, f.x - float(x) - 1.0f), 0.0f);
+    for (int y = -2; y <= 2; ++y) {
+      float gapY = max(max(float(y) - f.y, f.y - float(y) - 1.0f), 0.0f);
+      for (int z = -2; z <= 2; ++z) {
+        float gapZ = max(max(float(z) - f.z, f.z - float(z) - 1.0f), 0.0f);
+        if (gapX * gapX + gapY * gapY + gapZ * gapZ > second) continue;
+        vec3 apart = vec3(float(x), float(y), float(z)) +
+                     featurePoint(cell + ivec3(x, y, z), jitter, period, seed) - f;
+        float squared = apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
+        second = min(second, max(first, squared));
+        first = min(first, squared);
+      }
+    }
+  }
+  return vec2(sqrt(first), sqrt(second));
+}

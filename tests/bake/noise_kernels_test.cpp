@@ -3,14 +3,13 @@
 #include "bake/fields/noise_kernels.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
-#include <cstring>
 #include <random>
 
 #include "bake/fields/cell_place.h"
 #include "bake/fields/shared_text.h"
+#include "tests/bake/every_target.h"
 
 namespace nephele::test {
 namespace {
@@ -62,30 +61,15 @@ TEST(NoiseKernels, AgreeWithTheDefinition) {
 
 TEST(NoiseKernels, EveryTargetGivesEqualBits) {
   const auto all = cases();
-  std::vector<float> expected;
-  std::string names;
-  int targets = 0;
-  const int64_t supported = hwy::SupportedTargets();
-  for (int64_t bits = supported; bits != 0; bits &= bits - 1) {
-    const int64_t target = bits & -bits;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  expectEqualBitsOnEveryTarget([&] {
     std::vector<float> values(all.size() * kBlockPoints * 2, 0.25f);
     for (size_t n = 0; n < all.size(); ++n) {
       addNoiseOnLattice(&all[n].octave, 1, all[n].lattice, &values[n * 2 * kBlockPoints]);
       addNoiseAtPoints(all[n].octave, LatticePoints(all[n].lattice).points(),
                        &values[(n * 2 + 1) * kBlockPoints]);
     }
-    if (expected.empty()) expected = values;
-    EXPECT_EQ(std::memcmp(expected.data(), values.data(), values.size() * sizeof(float)), 0)
-        << hwy::TargetName(target);
-    names += std::string(" ") + hwy::TargetName(target);
-    ++targets;
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  std::printf("compared targets:%s\n", names.c_str());
-  EXPECT_GE(targets, 2) << "only one target on this machine: nothing was compared";
+    return values;
+  });
 }
 
 TEST(NoiseKernels, CellsSmallerThanTwoVoxelsAreLegal) {

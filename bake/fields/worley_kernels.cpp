@@ -1,0 +1,251 @@
+// Cellular noise by SIMD. The feature points that can be nearest to any place of a box are gathered once;
+// distances to those few are then taken in registers. Depends on worley_kernels.h, Highway, shared text.
+#include "bake/fields/worley_kernels.h"
+
+#include "bake/fields/cell_place.h"
+#include "bake/fields/shared_text.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bake/fields/worley_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef NEPHELE_WORLEY_FEATURES
+#define NEPHELE_WORLEY_FEATURES
+namespace nephele {
+
+// A box of at most this many cells along an axis needs at most 9³ cells: √3 more on each side.
+constexpr double kWidestBox = 4.0;
+constexpr int kMostFeatures = 9 * 9 * 9;
+// The widest vector's bytes. (HWY_ALIGN is that of one target, and these arrays serve all.)
+constexpr size_t kVectorBytes = 64;
+
+/// Feature points near a box, in cells relative to a first cell.
+struct Features {
+  int count = 0;
+  alignas(kVectorBytes) float x[kMostFeatures];
+  alignas(kVectorBytes) float y[kMostFeatures];
+  alignas(kVectorBytes) float z[kMostFeatures];
+};
+
+/// The lattice cell that places are relative to, along each axis.
+struct FirstCell {
+  int32_t x, y, z;
+};
+
+}  // namespace nephele
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace nephele {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Squared distance from a coordinate to the nearest and to the farthest place of [low, high].
+HWY_INLINE void axisGaps(float at, float low, float high, float& nearest, float& farthest) {
+  const float below = low - at, above = at - high;
+  const float gap = below > above ? below : above;
+  nearest = gap > 0.0f ? gap * gap : 0.0f;
+  const float far = -above > -below ? high - at : at - low;
+  farthest = far * far;
+}
+
+// Fills `out` with the feature points that can be among the nearest `rank` (1 or 2) of any place in [low,
+// high], in cells relative to `first`.
+void gatherFeatures(const WorleyNoise& noise, const FirstCell& first, const glm::vec3& low,
+                    const glm::vec3& high, int rank, Features& out) {
+  constexpr float kReach = 1.7320509f;  // √3, rounded up
+  float nearest[kMostFeatures];
+  float least = 1e9f, second = 1e9f;  // of the squared distances to the box's farthest places
+  const auto floorOf = [](float v) { return int(std::floor(v)); };
+  int count = 0;
+  for (int x = floorOf(low.x - kReach); x <= floorOf(high.x + kReach); ++x)
+    for (int y = floorOf(low.y - kReach); y <= floorOf(high.y + kReach); ++y)
+      for (int z = floorOf(low.z - kReach); z <= floorOf(high.z + kReach); ++z, ++count) {
+        const glm::ivec3 cell(cellAfter(first.x, float(x)), cellAfter(first.y, float(y)),
+                              cellAfter(first.z, float(z)));
+        const glm::vec3 place = shared::featurePoint(cell, noise.jitter, noise.period, noise.seed);
+        out.x[count] = float(x) + place.x;
+        out.y[count] = float(y) + place.y;
+        out.z[count] = float(z) + place.z;
+        float nearX, nearY, nearZ, farX, farY, farZ;
+        axisGaps(out.x[count], low.x, high.x, nearX, farX);
+        axisGaps(out.y[count], low.y, high.y, nearY, farY);
+        axisGaps(out.z[count], low.z, high.z, nearZ, farZ);
+        nearest[count] = nearX + nearY + nearZ;
+        const float farthest = farX + farY + farZ;
+        second = std::min(second, std::max(least, farthest));
+        least = std::min(least, farthest);
+      }
+  // A part in 10^5 for rounding: one feature too many costs nothing, one too few is wrong.
+  const float limit = (rank == 1 ? least : second) * 1.00001f + 1e-6f;
+  out.count = 0;
+  for (int n = 0; n < count; ++n) {
+    if (nearest[n] > limit) continue;
+    out.x[out.count] = out.x[n];
+    out.y[out.count] = out.y[n];
+    out.z[out.count] = out.z[n];
+    ++out.count;
+  }
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V distanceOf(D, V first, V second, WorleyOutput output) {
+  if (output == WorleyOutput::f1) return hn::Sqrt(first);
+  if (output == WorleyOutput::f2) return hn::Sqrt(second);
+  return hn::Sub(hn::Sqrt(second), hn::Sqrt(first));
+}
+
+// One block: x, y, z are the places of its 8 planes along each axis.
+void worleyRows(const Features& features, WorleyOutput output, const float* x, const float* y, const float* z,
+                float* values) {
+  const hn::CappedTag<float, kBlockEdge> d;
+  const size_t lanes = hn::Lanes(d);
+  const auto far = hn::Set(d, 9.0f);  // squared; above 3
+  for (int i = 0; i < kBlockEdge; ++i) {
+    // Squared distances across z for each feature of this plane: (x − fx)² + (y − fy)² in the order of the
+    // definition.
+    for (int j = 0; j < kBlockEdge; ++j)
+      for (size_t k = 0; k < size_t(kBlockEdge); k += lanes) {
+        const auto vz = hn::LoadU(d, z + k);
+        auto first = far, second = far;
+        for (int n = 0; n < features.count; ++n) {
+          const float dx = features.x[n] - x[i], dy = features.y[n] - y[j];
+          const auto dz = hn::Sub(hn::Set(d, features.z[n]), vz);
+          const auto squared = hn::Add(hn::Set(d, dx * dx + dy * dy), hn::Mul(dz, dz));
+          if (output != WorleyOutput::f1) second = hn::Min(second, hn::Max(first, squared));
+          first = hn::Min(first, squared);
+        }
+        hn::StoreU(distanceOf(d, first, second, output), d, values + i * 64 + j * 8 + int(k));
+      }
+  }
+}
+
+// Points given as places relative to the features' first cell.
+void worleyPlaces(const Features& features, WorleyOutput output, const float* x, const float* y,
+                  const float* z, size_t count, float* values) {
+  const hn::CappedTag<float, 16> d;
+  const size_t lanes = hn::Lanes(d);
+  const auto far = hn::Set(d, 9.0f);
+  // The arrays are padded to a whole vector; what lies beyond `count` is not used.
+  for (size_t n = 0; n < count; n += lanes) {
+    const auto vx = hn::Load(d, x + n), vy = hn::Load(d, y + n), vz = hn::Load(d, z + n);
+    auto first = far, second = far;
+    for (int f = 0; f < features.count; ++f) {
+      const auto dx = hn::Sub(hn::Set(d, features.x[f]), vx), dy = hn::Sub(hn::Set(d, features.y[f]), vy),
+                 dz = hn::Sub(hn::Set(d, features.z[f]), vz);
+      const auto squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
+      if (output != WorleyOutput::f1) second = hn::Min(second, hn::Max(first, squared));
+      first = hn::Min(first, squared);
+    }
+    HWY_ALIGN float lane[16];
+    hn::Store(distanceOf(d, first, second, output), d, lane);
+    for (size_t k = 0; k < lanes && n + k < count; ++k) values[n + k] = lane[k];
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace nephele
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace nephele {
+HWY_EXPORT(gatherFeatures);
+HWY_EXPORT(worleyRows);
+HWY_EXPORT(worleyPlaces);
+
+namespace {
+
+int rankOf(WorleyOutput output) { return output == WorleyOutput::f1 ? 1 : 2; }
+
+/// Places in cells relative to the first cell, padded for whole vectors.
+struct Places {
+  alignas(kVectorBytes) float x[kBlockPoints + 16];
+  alignas(kVectorBytes) float y[kBlockPoints + 16];
+  alignas(kVectorBytes) float z[kBlockPoints + 16];
+};
+
+/// The box that holds x[0…count), along one axis.
+void spanOf(const float* x, size_t count, float& low, float& high) {
+  low = high = x[0];
+  for (size_t n = 1; n < count; ++n) {
+    low = std::min(low, x[n]);
+    high = std::max(high, x[n]);
+  }
+}
+
+float fromDistances(const glm::vec2& both, WorleyOutput output) {
+  return output == WorleyOutput::f1 ? both.x : output == WorleyOutput::f2 ? both.y : both.y - both.x;
+}
+
+}  // namespace
+
+void worleyOnLattice(const WorleyNoise& noise, const Lattice& lattice, float* values) {
+  // 7 steps of up to 4/7 cell stay within the widest box.
+  if (7.0 * lattice.spacing > kWidestBox * noise.cellSize) {
+    worleyAtPoints(noise, LatticePoints(lattice).points(), values);
+    return;
+  }
+  const CellPlace px = cellPlace(lattice.origin.x, noise.cellSize),
+                  py = cellPlace(lattice.origin.y, noise.cellSize),
+                  pz = cellPlace(lattice.origin.z, noise.cellSize);
+  const float step = float(lattice.spacing / noise.cellSize);
+  float x[kBlockEdge], y[kBlockEdge], z[kBlockEdge];
+  for (int n = 0; n < kBlockEdge; ++n) {
+    x[n] = px.fraction + float(n) * step;
+    y[n] = py.fraction + float(n) * step;
+    z[n] = pz.fraction + float(n) * step;
+  }
+  Features features;
+  HWY_DYNAMIC_DISPATCH(gatherFeatures)
+  (noise, {px.cell, py.cell, pz.cell}, {x[0], y[0], z[0]}, {x[7], y[7], z[7]}, rankOf(noise.output),
+   features);
+  HWY_DYNAMIC_DISPATCH(worleyRows)(features, noise.output, x, y, z, values);
+}
+
+void worleyAtPoints(const WorleyNoise& noise, const Points& points, float* values) {
+  if (points.count == 0) return;
+  const CellPlace px = cellPlace(points.origin.x, noise.cellSize),
+                  py = cellPlace(points.origin.y, noise.cellSize),
+                  pz = cellPlace(points.origin.z, noise.cellSize);
+  const float frequency = float(1.0 / noise.cellSize);
+  Places places{};
+  for (size_t n = 0; n < points.count; ++n) {
+    places.x[n] = px.fraction + points.x[n] * frequency;
+    places.y[n] = py.fraction + points.y[n] * frequency;
+    places.z[n] = pz.fraction + points.z[n] * frequency;
+  }
+  glm::vec3 low, high;
+  spanOf(places.x, points.count, low.x, high.x);
+  spanOf(places.y, points.count, low.y, high.y);
+  spanOf(places.z, points.count, low.z, high.z);
+  const glm::vec3 size = high - low;
+  if (std::max({size.x, size.y, size.z}) <= float(kWidestBox)) {
+    Features features;
+    HWY_DYNAMIC_DISPATCH(gatherFeatures)
+    (noise, {px.cell, py.cell, pz.cell}, low, high, rankOf(noise.output), features);
+    HWY_DYNAMIC_DISPATCH(worleyPlaces)
+    (features, noise.output, places.x, places.y, places.z, points.count, values);
+    return;
+  }
+  // Points strewn over many cells, as under a wild warp: each by the definition.
+  for (size_t n = 0; n < points.count; ++n) {
+    const glm::vec3 whole(std::floor(places.x[n]), std::floor(places.y[n]), std::floor(places.z[n]));
+    const glm::ivec3 cell(cellAfter(px.cell, whole.x), cellAfter(py.cell, whole.y),
+                          cellAfter(pz.cell, whole.z));
+    const glm::vec3 f = glm::vec3(places.x[n], places.y[n], places.z[n]) - whole;
+    values[n] =
+        fromDistances(shared::worleyDistances(cell, f, noise.jitter, noise.period, noise.seed), noise.output);
+  }
+}
+
+float worleyAt(const WorleyNoise& noise, const glm::dvec3& p) {
+  const CellPlace x = cellPlace(p.x, noise.cellSize), y = cellPlace(p.y, noise.cellSize),
+                  z = cellPlace(p.z, noise.cellSize);
+  return fromDistances(shared::worleyDistances({x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction},
+                                               noise.jitter, noise.period, noise.seed),
+                       noise.output);
+}
+
+}  // namespace nephele
+#endif
