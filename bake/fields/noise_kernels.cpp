@@ -18,17 +18,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET != HWY_SCALAR
 
-// The same constants as in shared::hashCell, which NoiseKernels.AgreeWithTheDefinition holds them to.
+// The same constants as in shared::hashGradient, which NoiseKernels.AgreeWithTheDefinition holds them to.
 constexpr uint32_t kHashX = 0x9e3779b1u, kHashY = 0x85ebca77u, kHashZ = 0xc2b2ae3du;
-constexpr uint32_t kMixA = 0x2c1b3c6du, kMixB = 0x297a2d39u;
+constexpr uint32_t kMix = 0x2c1b3c6du;
 
+// The gradient's number in the top four bits.
 template <class DU, class VU = hn::Vec<DU>>
 HWY_INLINE VU mixHash(DU du, VU h) {
-  h = hn::Xor(h, hn::ShiftRight<15>(h));
-  h = hn::Mul(h, hn::Set(du, kMixA));
-  h = hn::Xor(h, hn::ShiftRight<12>(h));
-  h = hn::Mul(h, hn::Set(du, kMixB));
-  return hn::Xor(h, hn::ShiftRight<15>(h));
+  return hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(du, kMix));
 }
 
 template <class D, class V = hn::Vec<D>>
@@ -43,23 +40,38 @@ HWY_INLINE V mix(V a, V b, V t) {
   return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
 }
 
-// Gradients ±1 or 0 along each axis, from the low four bits of a hash, as shared::gradientDot chooses them.
+// How shared::gradientDot chooses: u is x or y, v is y, x or z, each with a sign.
+template <class D>
+struct Choice {
+  using VU = hn::Vec<hn::RebindToUnsigned<D>>;
+  using M = hn::Mask<D>;
+  M uIsX, vIsY, vIsX;
+  VU signU, signV;  // the sign bit, all else 0
+
+  HWY_INLINE Choice(D d, VU hash) {
+    const hn::RebindToUnsigned<D> du;
+    const auto has = [&](uint32_t mask, uint32_t value) HWY_ATTR {
+      return hn::RebindMask(d, hn::Eq(hn::And(hash, hn::Set(du, mask << 28)), hn::Set(du, value << 28)));
+    };
+    const VU sign = hn::Set(du, 0x80000000u);
+    uIsX = has(8u, 0u);
+    vIsY = has(12u, 0u);
+    vIsX = has(13u, 12u);
+    signU = hn::And(hn::ShiftLeft<3>(hash), sign);
+    signV = hn::And(hn::ShiftLeft<2>(hash), sign);
+  }
+};
+
+// Gradients ±1 or 0 along each axis.
 template <class D, class V, class VU>
 HWY_INLINE void gradients(D d, VU hash, V& gx, V& gy, V& gz) {
-  const hn::RebindToUnsigned<D> du;
+  const Choice<D> choice(d, hash);
   const V one = hn::Set(d, 1.0f);
-  const auto bit = [&](uint32_t mask, uint32_t value) HWY_ATTR {
-    return hn::RebindMask(d, hn::Eq(hn::And(hash, hn::Set(du, mask)), hn::Set(du, value)));
-  };
-  const V su = hn::BitCast(d, hn::Or(hn::BitCast(du, one), hn::ShiftLeft<31>(hash)));
-  const VU sign = hn::And(hn::ShiftLeft<30>(hash), hn::Set(du, 0x80000000u));
-  const V sv = hn::BitCast(d, hn::Or(hn::BitCast(du, one), sign));
-  const auto low8 = bit(8u, 0u), low4 = bit(12u, 0u), twist = bit(13u, 12u);
-  // u goes to x below 8, to y from there on; v to y below 4, to x at 12 and 14, to z elsewhere. Never both to
-  // one axis.
-  gx = hn::IfThenElse(low8, su, hn::IfThenElseZero(twist, sv));
-  gy = hn::IfThenElse(low8, hn::IfThenElseZero(low4, sv), su);
-  gz = hn::IfThenZeroElse(hn::Or(low4, twist), sv);
+  const V su = hn::Xor(one, hn::BitCast(d, choice.signU)), sv = hn::Xor(one, hn::BitCast(d, choice.signV));
+  // u and v never fall to one axis.
+  gx = hn::IfThenElse(choice.uIsX, su, hn::IfThenElseZero(choice.vIsX, sv));
+  gy = hn::IfThenElse(choice.uIsX, hn::IfThenElseZero(choice.vIsY, sv), su);
+  gz = hn::IfThenZeroElse(hn::Or(choice.vIsY, choice.vIsX), sv);
 }
 
 // One axis of a block: the cell of each of its 8 planes relative to the first, the place in it, and the fade
@@ -215,22 +227,47 @@ void addOnLattice(const NoiseOctave& octave, const Lattice& lattice, float* sums
   for (size_t group = 0; group < kGroups; ++group) addGroup(octave, ax, ay, az, group, sums);
 }
 
-// Dot product of corner (ox, oy, oz)'s gradient with the place relative to it, as shared::gradientDot.
-template <class D, class V, class VU>
-HWY_INLINE V cornerDot(D d, VU hash, V x, V y, V z) {
-  const hn::RebindToUnsigned<D> du;
-  const auto bit = [&](uint32_t mask, uint32_t value) HWY_ATTR {
-    return hn::RebindMask(d, hn::Eq(hn::And(hash, hn::Set(du, mask)), hn::Set(du, value)));
-  };
-  const V u = hn::IfThenElse(bit(8u, 0u), x, y);
-  const V v = hn::IfThenElse(bit(12u, 0u), y, hn::IfThenElse(bit(13u, 12u), x, z));
-  const VU signV = hn::And(hn::ShiftLeft<30>(hash), hn::Set(du, 0x80000000u));
-  return hn::Add(hn::Xor(u, hn::BitCast(d, hn::ShiftLeft<31>(hash))), hn::Xor(v, hn::BitCast(d, signV)));
-}
+// A corner's gradient times the place relative to it, as shared::gradientDot.
+#if HWY_MAX_BYTES >= 64
+// Sixteen lanes hold the whole table of gradients. A product with 0 adds ±0, which changes no sum that is not
+// 0.
+struct GradientTable {
+  hn::Vec<Tag> x, y, z;
+  HWY_INLINE GradientTable() {
+    HWY_ALIGN float gx[16], gy[16], gz[16];
+    for (uint32_t h = 0; h < 16; ++h) {
+      gx[h] = shared::gradientDot(h, 1.0f, 0.0f, 0.0f);
+      gy[h] = shared::gradientDot(h, 0.0f, 1.0f, 0.0f);
+      gz[h] = shared::gradientDot(h, 0.0f, 0.0f, 1.0f);
+    }
+    x = hn::Load(Tag(), gx);
+    y = hn::Load(Tag(), gy);
+    z = hn::Load(Tag(), gz);
+  }
+  template <class V, class VU>
+  HWY_INLINE V dot(VU hash, V dx, V dy, V dz) const {
+    const auto h = hn::IndicesFromVec(Tag(), hn::ShiftRight<28>(hash));
+    return hn::Add(hn::Add(hn::Mul(hn::TableLookupLanes(x, h), dx), hn::Mul(hn::TableLookupLanes(y, h), dy)),
+                   hn::Mul(hn::TableLookupLanes(z, h), dz));
+  }
+};
+#else
+struct GradientTable {
+  template <class V, class VU>
+  HWY_INLINE V dot(VU hash, V dx, V dy, V dz) const {
+    const hn::DFromV<V> d;
+    const Choice<hn::DFromV<V>> choice(d, hash);
+    const V u = hn::IfThenElse(choice.uIsX, dx, dy);
+    const V v = hn::IfThenElse(choice.vIsY, dy, hn::IfThenElse(choice.vIsX, dx, dz));
+    return hn::Add(hn::Xor(u, hn::BitCast(d, choice.signU)), hn::Xor(v, hn::BitCast(d, choice.signV)));
+  }
+};
+#endif
 
 // One vector of points, given as places relative to a first cell whose hashed coordinates are hx, hy, hz.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V noiseAt(D d, V x, V y, V z, uint32_t cellX, uint32_t cellY, uint32_t cellZ, uint32_t seed) {
+HWY_INLINE V noiseAt(D d, const GradientTable& table, V x, V y, V z, uint32_t cellX, uint32_t cellY,
+                     uint32_t cellZ, uint32_t seed) {
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
   const V one = hn::Set(d, 1.0f);
@@ -247,8 +284,8 @@ HWY_INLINE V noiseAt(D d, V x, V y, V z, uint32_t cellX, uint32_t cellY, uint32_
   const V x1 = hn::Sub(x0, one), y1 = hn::Sub(y0, one), z1 = hn::Sub(z0, one);
   const V sx = fade(d, x0), sy = fade(d, y0), sz = fade(d, z0);
   const auto alongX = [&](auto hyz, V dy, V dz) HWY_ATTR {
-    return mix(cornerDot(d, mixHash(du, hn::Xor(hx0, hyz)), x0, dy, dz),
-               cornerDot(d, mixHash(du, hn::Xor(hx1, hyz)), x1, dy, dz), sx);
+    return mix(table.dot(mixHash(du, hn::Xor(hx0, hyz)), x0, dy, dz),
+               table.dot(mixHash(du, hn::Xor(hx1, hyz)), x1, dy, dz), sx);
   };
   const V low = mix(alongX(hn::Xor(hy0, hz0), y0, z0), alongX(hn::Xor(hy1, hz0), y1, z0), sy);
   const V high = mix(alongX(hn::Xor(hy0, hz1), y0, z1), alongX(hn::Xor(hy1, hz1), y1, z1), sy);
@@ -257,8 +294,9 @@ HWY_INLINE V noiseAt(D d, V x, V y, V z, uint32_t cellX, uint32_t cellY, uint32_
 
 // Points from `first` on whose number is a multiple of the vector's lanes; returns how many were done.
 size_t addAtPoints(const NoiseOctave& octave, const Points& points, float* sums) {
-  const hn::ScalableTag<float> d;
+  const Tag d;
   const size_t lanes = hn::Lanes(d);
+  const GradientTable table;
   const CellPlace px = cellPlace(points.origin.x, octave.cellSize),
                   py = cellPlace(points.origin.y, octave.cellSize),
                   pz = cellPlace(points.origin.z, octave.cellSize);
@@ -269,7 +307,7 @@ size_t addAtPoints(const NoiseOctave& octave, const Points& points, float* sums)
     const auto y = hn::Add(hn::Set(d, py.fraction), hn::Mul(hn::LoadU(d, points.y + n), frequency));
     const auto z = hn::Add(hn::Set(d, pz.fraction), hn::Mul(hn::LoadU(d, points.z + n), frequency));
     const auto noise =
-        noiseAt(d, x, y, z, uint32_t(px.cell), uint32_t(py.cell), uint32_t(pz.cell), octave.seed);
+        noiseAt(d, table, x, y, z, uint32_t(px.cell), uint32_t(py.cell), uint32_t(pz.cell), octave.seed);
     hn::StoreU(hn::Add(hn::LoadU(d, sums + n), hn::Mul(weight, noise)), d, sums + n);
   }
   return n;
@@ -298,9 +336,9 @@ float mix(float a, float b, float t) { return a + t * (b - a); }
 /// The gradient that shared::gradientDot uses for a hash.
 glm::vec3 gradientOf(const NoiseOctave& octave, int32_t x, int32_t y, int32_t z) {
   const uint32_t hash =
-      shared::hashCell({shared::foldCell(x, octave.period), shared::foldCell(y, octave.period),
-                        shared::foldCell(z, octave.period)},
-                       octave.seed);
+      shared::hashGradient({shared::foldCell(x, octave.period), shared::foldCell(y, octave.period),
+                            shared::foldCell(z, octave.period)},
+                           octave.seed);
   return {shared::gradientDot(hash, 1, 0, 0), shared::gradientDot(hash, 0, 1, 0),
           shared::gradientDot(hash, 0, 0, 1)};
 }

@@ -5,6 +5,10 @@
 //   float brickDensity(uint slot, vec3 position);   trilinear; position in [0, 8] from the brick's corner, in voxels
 
 NPH_CONST float kBrickEdge = 8.0f;
+// Neighbouring steps are lit together, from their centre of weight, until they take this share of the view or are this many:
+// light is by far the dearest, and within them it changes by little. Both vanish as steps do.
+NPH_CONST float kLitTogetherShare = 0.02f;
+NPH_CONST int kLitTogetherSteps = 4;
 
 struct MarchResult {
   vec3 radiance;       // scattered towards the camera
@@ -44,7 +48,7 @@ NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enoug
                            NPH_INOUT(float) samples) {
   float tNear = 0.0f;
   float tFar = 0.0f;
-  if (!intersectBox(origin, direction, params.boxMin.xyz, params.boxMax.xyz, tNear, tFar)) return 0.0f;
+  if (!intersectBox(origin, direction, vec3(params.boxMin), vec3(params.boxMax), tNear, tFar)) return 0.0f;
   tFar = min(tFar, reach);
   float dt = params.octaves.w / length(direction);
   vec3 stride = direction * dt;
@@ -52,9 +56,10 @@ NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enoug
   int steps = 1;
   // An int counts steps: a float would stop counting at 2^24.
   for (int k = 0;; k += steps) {
-    float t = tNear + (float(k) + start) * dt;
-    if (!(t < tFar)) break;  // also where t is NaN
-    column += densityAndSkip(origin + t * direction, stride, steps) * dt;
+    float t = tNear + float(k) * dt;
+    if (!(t < tFar)) break;        // also where t is NaN
+    float ds = min(dt, tFar - t);  // the last step ends where the medium does
+    column += densityAndSkip(origin + (t + start * ds) * direction, stride, steps) * ds;
     samples += 1.0f;
     if (column > enough) break;
   }
@@ -68,7 +73,7 @@ NPH_FN vec3 scatteredByOrders(vec3 toLight, vec3 ray, float column) {
   float scattering = 1.0f;
   float g = params.sigmaT.w;
   for (int m = 0; m <= params.counts.y; ++m) {
-    sum += scattering * phaseHenyeyGreenstein(toLight, ray, g) * exp(-(extinction * column) * params.sigmaT.xyz);
+    sum += scattering * phaseHenyeyGreenstein(toLight, ray, g) * exp(-(extinction * column) * vec3(params.sigmaT));
     extinction *= params.octaves.x;
     scattering *= params.octaves.y;
     g *= params.octaves.z;
@@ -84,81 +89,136 @@ NPH_FN float columnThatHides() {
   return extinction > 0.0f ? min(-log(params.environment.w) / extinction, 1e30f) : 1e30f;
 }
 
-// Source function at a point: Σ over lights, and the sky by one random direction, per unit density, before σ_s.
-NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, NPH_INOUT(uint) random, NPH_INOUT(float) samples) {
-  vec3 sum = vec3(0.0f);
-  for (int i = 0; i < params.counts.x; ++i) {
-    float start = params.counts.w != 0 ? nextUniform(random) : 0.5f;
-    vec3 toLight = params.lights[i].direction.xyz;
-    vec3 toLightIndex = params.lights[i].directionIndex.xyz;
-    vec3 irradiance = params.lights[i].power.xyz;
-    float reach = 3.0e38f;
-    if (int(params.lights[i].direction.w) == kLightPoint) {
-      vec3 apart = params.lights[i].directionIndex.xyz - position;
-      vec3 apartWorld = apart.x * params.worldFromIndexX.xyz + apart.y * params.worldFromIndexY.xyz +
-                        apart.z * params.worldFromIndexZ.xyz;
-      reach = max(length(apartWorld), 1e-20f);  // a sample on the light itself has no direction
-      toLight = apartWorld / reach;
-      toLightIndex = apart / reach;
-      irradiance /= reach * reach;
-    }
-    float column = columnDensity(position, toLightIndex, reach, enough, start, samples);
-    sum += irradiance * scatteredByOrders(toLight, ray, column);
+// A light or, beyond the last one, the sky, as seen from a point.
+struct Lighting {
+  vec3 toLight;       // unit, world axes
+  vec3 toLightIndex;  // the same in voxels per world unit
+  float reach;        // world distance to the light
+  vec3 irradiance;    // for the sky: radiance over the density with which the direction was drawn
+};
+
+NPH_FN Lighting lightingFrom(int i, vec3 position) {
+  Lighting l;
+  l.toLight = vec3(params.lights[i].direction);
+  l.toLightIndex = vec3(params.lights[i].directionIndex);
+  l.reach = 3.0e38f;
+  l.irradiance = vec3(params.lights[i].power);
+  if (int(params.lights[i].direction.w) == kLightPoint) {
+    vec3 apart = vec3(params.lights[i].directionIndex) - position;
+    vec3 apartWorld = apart.x * vec3(params.worldFromIndexX) + apart.y * vec3(params.worldFromIndexY) +
+                      apart.z * vec3(params.worldFromIndexZ);
+    l.reach = max(length(apartWorld), 1e-15f);  // a sample on the light has no direction; its square stays a float
+    l.toLight = apartWorld / l.reach;
+    l.toLightIndex = apart / l.reach;
+    l.irradiance /= l.reach * l.reach;
   }
-  if (max(params.environment.x, max(params.environment.y, params.environment.z)) > 0.0f) {
-    // Half the directions follow the phase function, half are uniform: the weight stays bounded for all orders.
-    float choice = nextUniform(random);
-    float u1 = nextUniform(random);
-    float u2 = nextUniform(random);
-    float start = nextUniform(random);
-    vec3 toSky = sampleHenyeyGreenstein(ray, choice < 0.5f ? params.sigmaT.w : 0.0f, u1, u2);
-    vec3 toSkyIndex = toSky.x * params.indexFromWorldX.xyz + toSky.y * params.indexFromWorldY.xyz +
-                      toSky.z * params.indexFromWorldZ.xyz;
-    float density = 0.5f * phaseHenyeyGreenstein(toSky, ray, params.sigmaT.w) + 0.5f * phaseIsotropic();
-    float column = columnDensity(position, toSkyIndex, 3.0e38f, enough, start, samples);
-    sum += params.environment.xyz * scatteredByOrders(toSky, ray, column) / density;
+  return l;
+}
+
+// One direction to the sky: half of them follow the phase function, half are uniform, so that the weight stays bounded for
+// all orders. Neighbouring pixels look the same way, so that differences stay smooth; over the picture's samples the
+// directions follow the additive recurrence of preview/gpu/sub_pixels.h, in integers.
+NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
+  uint rotation = randomState(place, 0u, 0u, uint(params.brickCount.w));
+  float u1 = float((rotation + number * 3242174889u) >> 8u) * (1.0f / 16777216.0f);
+  float u2 = float((hashBits(rotation) + number * 2447445414u) >> 8u) * (1.0f / 16777216.0f);
+  bool byPhase = ((place + number) & 1u) == 0u;
+  Lighting l;
+  l.toLight = sampleHenyeyGreenstein(ray, byPhase ? params.sigmaT.w : 0.0f, u1, u2);
+  l.toLightIndex = l.toLight.x * vec3(params.indexFromWorldX) + l.toLight.y * vec3(params.indexFromWorldY) +
+                   l.toLight.z * vec3(params.indexFromWorldZ);
+  l.reach = 3.0e38f;
+  float density = 0.5f * phaseHenyeyGreenstein(l.toLight, ray, params.sigmaT.w) + 0.5f * phaseIsotropic();
+  l.irradiance = vec3(params.environment) / density;
+  return l;
+}
+
+// Source function at a point: Σ over lights and the sky, per unit density, before σ_s. `place` counts the points lit along
+// the ray, `number` the picture's samples.
+NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
+                         NPH_INOUT(float) samples) {
+  vec3 sum = vec3(0.0f);
+  bool sky = max(params.environment.x, max(params.environment.y, params.environment.z)) > 0.0f;
+  int count = params.counts.x + (sky ? 1 : 0);
+  for (int i = 0; i < count; ++i) {
+    float start = params.counts.w != 0 ? nextUniform(random) : 0.5f;
+    Lighting l;
+    if (i < params.counts.x) {
+      l = lightingFrom(i, position);
+    } else {
+      l = lightingFromSky(ray, place, number);
+    }
+    float column = columnDensity(position, l.toLightIndex, l.reach, enough, start, samples);
+    sum += l.irradiance * scatteredByOrders(l.toLight, ray, column);
   }
   return sum;
 }
 
-// One ray through picture position `at` (pixels from the top left corner).
-NPH_FN MarchResult marchRay(vec2 at, uint random) {
+// One ray through picture position `at` (pixels from the top left corner); `random` is the pixel's own, `number` the sample's.
+NPH_FN MarchResult marchRay(vec2 at, uint random, uint number) {
   MarchResult result;
   result.radiance = vec3(0.0f);
   result.opticalDepth = vec3(0.0f);
   result.depth = 0.0f;
   result.depthWeight = 0.0f;
   result.samples = 0.0f;
-  vec3 rayLong = params.rayCorner.xyz + at.x * params.rayDx.xyz + at.y * params.rayDy.xyz;
+  vec3 rayLong = vec3(params.rayCorner) + at.x * vec3(params.rayDx) + at.y * vec3(params.rayDy);
   float stretch = length(rayLong);
   vec3 ray = rayLong / stretch;
-  vec3 origin = params.originCorner.xyz + at.x * params.originDx.xyz + at.y * params.originDy.xyz;
-  vec3 direction = (params.directionCorner.xyz + at.x * params.directionDx.xyz + at.y * params.directionDy.xyz) / stretch;
+  vec3 origin = vec3(params.originCorner) + at.x * vec3(params.originDx) + at.y * vec3(params.originDy);
+  vec3 direction = (vec3(params.directionCorner) + at.x * vec3(params.directionDx) + at.y * vec3(params.directionDy)) / stretch;
   float tNear = 0.0f;
   float tFar = 0.0f;
-  if (!intersectBox(origin, direction, params.boxMin.xyz, params.boxMax.xyz, tNear, tFar)) return result;
+  if (!intersectBox(origin, direction, vec3(params.boxMin), vec3(params.boxMax), tNear, tFar)) return result;
   float dt = params.sigmaS.w / length(direction);
   vec3 stride = direction * dt;
   float start = params.counts.w != 0 ? nextUniform(random) : 0.5f;
   float enough = columnThatHides();
+  vec3 share = vec3(0.0f);  // of the view, in the steps that wait to be lit: ∫ e^(−τ) ρ ds
+  float place = 0.0f;       // its mean distance along the ray, times its mean over channels
+  float waitingTaken = 0.0f;
+  int waitingSteps = 0;
+  uint lit = 0u;
+  bool last = false;
   int steps = 1;
-  for (int k = 0;; k += steps) {
-    float t = tNear + (float(k) + start) * dt;
-    if (!(t < tFar)) break;  // also where t is NaN
-    vec3 position = origin + t * direction;
-    float rho = densityAndSkip(position, stride, steps);
-    result.samples += 1.0f;
-    if (rho <= 0.0f) continue;
-    vec3 x = (rho * dt) * params.sigmaT.xyz;
-    vec3 transmittance = exp(-result.opticalDepth);
-    vec3 source = params.sigmaS.xyz * inScattering(position, ray, enough, random, result.samples);
-    result.radiance += transmittance * source * (rho * dt) * stepIntegral(x);
-    result.opticalDepth += x;
-    float taken = dot(transmittance - exp(-result.opticalDepth), vec3(1.0f / 3.0f));
-    result.depth += taken * (params.originCorner.w * stretch + t);
-    result.depthWeight += taken;
-    vec3 left = exp(-result.opticalDepth);
-    if (max(left.x, max(left.y, left.z)) < params.environment.w) break;
+  for (int k = 0; !last; k += steps) {
+    float t = tNear + float(k) * dt;
+    last = !(t < tFar);  // also where t is NaN
+    steps = 1;
+    if (!last) {
+      float ds = min(dt, tFar - t);
+      float middle = t + start * ds;
+      float rho = densityAndSkip(origin + middle * direction, stride, steps);
+      result.samples += 1.0f;
+      if (rho > 0.0f) {
+        vec3 x = (rho * ds) * vec3(params.sigmaT);
+        vec3 before = exp(-result.opticalDepth);
+        vec3 weight = before * (rho * ds) * stepIntegral(x);
+        share += weight;
+        place += dot(weight, vec3(1.0f / 3.0f)) * middle;
+        result.opticalDepth += x;
+        vec3 left = exp(-result.opticalDepth);
+        float taken = dot(before - left, vec3(1.0f / 3.0f));
+        result.depth += taken * (params.originCorner.w * stretch + middle);
+        result.depthWeight += taken;
+        waitingTaken += taken;
+        last = max(left.x, max(left.y, left.z)) < params.environment.w;
+      }
+      waitingSteps += steps;
+    }
+    float mean = dot(share, vec3(1.0f / 3.0f));
+    if (mean > 0.0f && (last || waitingTaken >= kLitTogetherShare || waitingSteps >= kLitTogetherSteps)) {
+      // Each place has numbers of its own, so that more or fewer drawn at another do not change them.
+      uint placeRandom = hashBits(random ^ lit);
+      vec3 position = origin + (place / mean) * direction;
+      vec3 source = vec3(params.sigmaS) * inScattering(position, ray, enough, lit, number, placeRandom, result.samples);
+      lit += 1u;
+      result.radiance += source * share;
+      share = vec3(0.0f);
+      place = 0.0f;
+      waitingTaken = 0.0f;
+    }
+    if (mean <= 0.0f || waitingTaken <= 0.0f) waitingSteps = 0;
   }
   return result;
 }

@@ -16,6 +16,14 @@ NPH_FN uint hashCell(ivec3 cell, uint seed) {
   return h;
 }
 
+// The gradient of a lattice point, 0…15: the best-mixed bits of one multiplication. Pairs of neighbours two cells apart and
+// nearer are as evenly spread as with hashCell.
+NPH_FN uint hashGradient(ivec3 cell, uint seed) {
+  uint h = (uint(cell.x) * 0x9e3779b1u) ^ (uint(cell.y) * 0x85ebca77u) ^ (uint(cell.z) * 0xc2b2ae3du) ^ seed;
+  h ^= h >> 15u;
+  return (h * 0x2c1b3c6du) >> 28u;
+}
+
 // The seed of octave, axis or layer `number` of a noise, apart from the seeds of its neighbours.
 NPH_FN uint seedApart(uint seed, int number) {
   return hashCell(ivec3(number, 0x5bd1, 0x1b87), seed);
@@ -24,9 +32,8 @@ NPH_FN uint seedApart(uint seed, int number) {
 // 6t⁵ − 15t⁴ + 10t³ [Perlin 2002].
 NPH_FN float fadeQuintic(float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }
 
-// Dot product with one of the 12 edge gradients (four of them twice, to fill 16), chosen by the low bits [Perlin 2002].
-NPH_FN float gradientDot(uint hash, float x, float y, float z) {
-  uint h = hash & 15u;
+// Dot product with one of the 12 edge gradients (four of them twice, to fill 16), chosen by h in 0…15 [Perlin 2002].
+NPH_FN float gradientDot(uint h, float x, float y, float z) {
   float u = h < 8u ? x : y;
   float v = h < 4u ? y : (h == 12u || h == 14u ? x : z);
   return ((h & 1u) == 0u ? u : -u) + ((h & 2u) == 0u ? v : -v);
@@ -45,7 +52,7 @@ NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
   for (int c = 0; c < 8; ++c) {
     ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
     ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
-    corner[c] = gradientDot(hashCell(at, seed), f.x - float(o.x), f.y - float(o.y), f.z - float(o.z));
+    corner[c] = gradientDot(hashGradient(at, seed), f.x - float(o.x), f.y - float(o.y), f.z - float(o.z));
   }
   float sx = fadeQuintic(f.x);
   float sy = fadeQuintic(f.y);

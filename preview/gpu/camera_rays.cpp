@@ -1,0 +1,127 @@
+// Rays, lights and medium for the march. Depends on scene, volume/bricks.h and shaders/shared.
+#include "preview/gpu/camera_rays.h"
+
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <limits>
+
+namespace nephele {
+namespace {
+
+using glm::dmat3;
+using glm::dvec3;
+using glm::vec4;
+
+// Below this the rest of a ray cannot be seen in 8 bits, nor in a comparison at 1e-3.
+constexpr float kSmallestTransmittance = 1e-4f;
+
+vec4 row(const dvec3& v, double w = 0.0) { return vec4(glm::vec3(v), static_cast<float>(w)); }
+dvec3 vectorOf(const Rgb& rgb) { return dvec3(rgb[0], rgb[1], rgb[2]); }
+
+struct Frame {
+  dvec3 forward, right, up;
+};
+
+Frame frameOf(const Camera& camera) {
+  const dvec3 view = camera.target - camera.position;
+  const double distance = glm::length(view);
+  if (!(distance > 0.0)) throw InputError({}, "the camera's target is its position, so it looks nowhere");
+  const dvec3 forward = view / distance;
+  const dvec3 side = glm::cross(forward, camera.up);
+  // The sine of the angle between view and up, times up's length.
+  constexpr double kParallel = 1e-9;
+  if (!(glm::length(side) > kParallel * glm::length(camera.up)))
+    throw InputError({}, "the camera's up points along its view");
+  const dvec3 right = glm::normalize(side);
+  return {forward, right, glm::cross(right, forward)};
+}
+
+/// Axis distance from the camera to the nearest corner of the support; 0 where the camera is beside or inside
+/// it.
+double planeDistance(const BrickVolume& bricks, const Camera& camera, const dvec3& forward) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int corner = 0; corner < 8; ++corner) {
+    dvec3 index;
+    for (int axis = 0; axis < 3; ++axis)
+      index[axis] = (corner >> axis & 1) != 0 ? bricks.activeMax[axis] : bricks.activeMin[axis] - 1;
+    const dvec3 world(bricks.worldFromIndex * glm::dvec4(index, 1.0));
+    nearest = std::min(nearest, glm::dot(world - camera.position, forward));
+  }
+  return std::max(nearest, 0.0);
+}
+
+void setRays(shared::MarchParameters& p, const Camera& camera, const BrickVolume& bricks,
+             const dmat3& indexFromWorld, int width, int height) {
+  const Frame frame = frameOf(camera);
+  const double half = std::tan(0.5 * camera.fov);
+  const double aspect = static_cast<double>(width) / height;
+  const dvec3 corner = frame.forward - half * aspect * frame.right + half * frame.up;
+  const dvec3 dx = (2.0 * half * aspect / width) * frame.right;
+  const dvec3 dy = (-2.0 * half / height) * frame.up;
+  const double distance = planeDistance(bricks, camera, frame.forward);
+  const dvec3 brickCorner(bricks.brickMin * kBrickCells);
+  const dvec3 cameraIndex =
+      indexFromWorld * (camera.position - dvec3(bricks.worldFromIndex[3])) - brickCorner;
+  p.rayCorner = row(corner);
+  p.rayDx = row(dx);
+  p.rayDy = row(dy);
+  p.directionCorner = row(indexFromWorld * corner);
+  p.directionDx = row(indexFromWorld * dx);
+  p.directionDy = row(indexFromWorld * dy);
+  p.originCorner = row(cameraIndex + distance * (indexFromWorld * corner), distance);
+  p.originDx = row(distance * (indexFromWorld * dx));
+  p.originDy = row(distance * (indexFromWorld * dy));
+}
+
+void setLights(shared::MarchParameters& p, const std::vector<Light>& lights, const BrickVolume& bricks,
+               const dmat3& indexFromWorld) {
+  if (lights.size() > static_cast<size_t>(shared::kMaxLights))
+    throw InputError({}, "the scene has " + std::to_string(lights.size()) + " lights; at most " +
+                             std::to_string(shared::kMaxLights) + " are lit");
+  p.counts.x = static_cast<int>(lights.size());
+  for (size_t i = 0; i < lights.size(); ++i) {
+    shared::LightParameters& to = p.lights[i];
+    if (const Sun* sun = std::get_if<Sun>(&lights[i])) {
+      const dvec3 toLight = glm::normalize(sun->toLight);
+      to = {row(toLight, shared::kLightSun), row(indexFromWorld * toLight), row(vectorOf(sun->irradiance))};
+    } else {
+      const PointLight& point = std::get<PointLight>(lights[i]);
+      const dvec3 index = indexFromWorld * (point.position - dvec3(bricks.worldFromIndex[3]));
+      to = {row(dvec3(0.0), shared::kLightPoint), row(index - dvec3(bricks.brickMin * kBrickCells)),
+            row(vectorOf(point.intensity))};
+    }
+  }
+}
+
+}  // namespace
+
+shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolume& bricks, int width,
+                                        int height, unsigned seed, bool randomStart) {
+  shared::MarchParameters p{};
+  const dmat3 worldFromIndex(bricks.worldFromIndex);
+  const dmat3 indexFromWorld = glm::inverse(worldFromIndex);
+  setRays(p, view.camera, bricks, indexFromWorld, width, height);
+  setLights(p, view.scene.lights, bricks, indexFromWorld);
+  p.worldFromIndexX = row(worldFromIndex[0]);
+  p.worldFromIndexY = row(worldFromIndex[1]);
+  p.worldFromIndexZ = row(worldFromIndex[2]);
+  p.indexFromWorldX = row(indexFromWorld[0]);
+  p.indexFromWorldY = row(indexFromWorld[1]);
+  p.indexFromWorldZ = row(indexFromWorld[2]);
+  const glm::ivec3 brickCorner = bricks.brickMin * kBrickCells;
+  p.boxMin = row(dvec3(bricks.activeMin - 1 - brickCorner));
+  p.boxMax = row(dvec3(bricks.activeMax - brickCorner));
+  if (bricks.empty()) p.boxMin = p.boxMax = vec4(0.0f);  // a box that no ray meets
+  const Scene& scene = view.scene;
+  const dvec3 sigmaS = vectorOf(view.medium.sigmaS);
+  p.sigmaT = row(sigmaS + vectorOf(view.medium.sigmaA), view.medium.g);
+  p.sigmaS = row(sigmaS, scene.march.stepVoxels);
+  p.octaves = row(dvec3(scene.octaves.a, scene.octaves.b, scene.octaves.c), scene.march.shadowStepVoxels);
+  p.environment = row(vectorOf(scene.environment.constant), double{kSmallestTransmittance});
+  p.counts.y = scene.octaves.count;
+  p.counts.w = randomStart ? 1 : 0;
+  p.brickCount = glm::ivec4(bricks.brickCount, static_cast<int>(seed));
+  return p;
+}
+
+}  // namespace nephele

@@ -1,0 +1,19 @@
+// From a scene in world space to the march's parameters in index space, in double precision until the last
+// rounding. Depends on scene, volume/bricks.h and shaders/shared.
+#pragma once
+
+#include "preview/viewed_scene.h"
+#include "shaders/shared/leaves.h"
+#include "volume/bricks.h"
+
+namespace nephele {
+
+/// Everything the march is told for a picture of width × height pixels. Rays start on a plane across the
+/// camera's axis in front of the medium's support, and coordinates are voxels from the corner of the brick
+/// grid: neither a far camera nor a medium far from the origin costs precision. Any affine worldFromIndex.
+/// `randomStart`: steps start at random instead of midway. Throws InputError for more than kMaxLights lights,
+/// and for a camera without a direction (target at position, or up along the view).
+shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolume& bricks, int width,
+                                        int height, unsigned seed, bool randomStart);
+
+}  // namespace nephele

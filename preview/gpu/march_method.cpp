@@ -1,0 +1,76 @@
+// Headless pictures by the march. Depends on preview/method.h, base and gpu.
+#include "preview/gpu/march_method.h"
+
+#include <chrono>
+#include <optional>
+
+#include "base/progress.h"
+#include "preview/gpu/accumulator.h"
+#include "preview/gpu/camera_rays.h"
+#include "preview/gpu/egl_context.h"
+
+namespace nephele {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kProgressSeconds = 0.1;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+class MarchMethod : public Method {
+ public:
+  explicit MarchMethod(const MethodOptions& options) {
+    auto start = Clock::now();
+    context_.emplace();
+    secondsDriver = secondsSince(start);
+    start = Clock::now();
+    pass_.emplace(options.filter);
+    secondsShaders = secondsSince(start);
+    renderer = glRenderer();
+  }
+
+  void setVolume(const BrickVolume& bricks) override {
+    atlas_.reset();  // two volumes at once may be more than the GPU holds
+    atlas_.emplace(bricks, pass_->filter());
+    bricks_ = &bricks;
+  }
+
+  Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
+    NEPHELE_CHECK_EQ(atlas_.has_value(), true);
+    const auto start = Clock::now();
+    const Film film(request.width, request.height);
+    pass_->setParameters(marchParameters(view, *bricks_, request.width, request.height, request.seed, true));
+    Accumulator accumulator(request.width, request.height, request.samples, request.seed);
+    {
+      Progress progress("rendering", accumulator.pixelsTotal(), request.quiet);
+      for (uint64_t before = 0; !accumulator.done();) {
+        accumulator.advance(*pass_, *atlas_, film, kProgressSeconds);
+        progress.advance(accumulator.pixelsDone() - before);
+        before = accumulator.pixelsDone();
+      }
+    }
+    FilmPicture result = film.read();
+    cost.milliseconds = secondsSince(start) * 1e3;
+    cost.densitySamplesPerPixel =
+        result.densitySamples / (static_cast<double>(request.width) * request.height);
+    cost.gpuBytes = atlas_->gpuBytes() + film.gpuBytes() + pass_->gpuBytes();
+    return std::move(result.picture);
+  }
+
+ private:
+  std::optional<EglContext> context_;  // first, so that it goes last
+  std::optional<MarchPass> pass_;
+  std::optional<BrickAtlas> atlas_;
+  const BrickVolume* bricks_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> makeMarchMethod(const MethodOptions& options) {
+  return std::make_unique<MarchMethod>(options);
+}
+
+}  // namespace nephele

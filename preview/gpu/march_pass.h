@@ -1,0 +1,43 @@
+// The march as a pass over a screen-filling triangle: one sample of each pixel of a rectangle, added to a
+// film. Depends on shaders/shared, gpu/brick_atlas.h, gpu/film.h and gpu/shader.h.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <string>
+#include <vector>
+
+#include "preview/gpu/brick_atlas.h"
+#include "preview/gpu/film.h"
+#include "preview/gpu/shader.h"
+#include "shaders/shared/leaves.h"
+
+namespace nephele {
+
+/// Half-open rectangle of pixels, rows counted from the top.
+struct PixelRectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// The compiled march with its parameters.
+class MarchPass {
+ public:
+  /// Compiles for one filter; `changes` are for tests. Throws WorldError where the driver refuses.
+  explicit MarchPass(Filter filter, const std::vector<TextChange>& changes = {});
+
+  void setParameters(const shared::MarchParameters& parameters);
+  /// Adds one sample of each pixel in `where` to the film, seen through picture position (x, y) + subPixel;
+  /// `number` is the sample's number. Does not wait for the GPU.
+  void draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPixel, unsigned number,
+            const PixelRectangle& where) const;
+
+  Filter filter() const { return filter_; }
+  uint64_t gpuBytes() const { return sizeof(shared::MarchParameters); }
+
+ private:
+  Filter filter_;
+  GlProgram program_;
+  GlBuffer parameters_;
+  GlVertexArray noVertices_;
+};
+
+}  // namespace nephele

@@ -1,0 +1,118 @@
+// nephele-preview: reads the command line, calls what it asks for, returns the exit code. Depends on preview
+// and CLI11.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "base/version.h"
+#include "preview/app/app.h"
+#include "preview/measure/compare.h"
+#include "preview/render_command.h"
+
+namespace nephele {
+namespace {
+
+/// "960x540" → its two numbers, each 1 to 32768. Throws InputError.
+void parseSize(const std::string& option, const std::string& text, int& width, int& height) {
+  constexpr int kLongest = 32768;
+  int used = 0;
+  const int read = std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used);
+  if (read != 2 || static_cast<size_t>(used) != text.size() || width < 1 || height < 1 || width > kLongest ||
+      height > kLongest)
+    throw InputError({}, option + " '" + text + "' should be WIDTHxHEIGHT in pixels, as in 960x540");
+}
+
+/// "1-48" → its two numbers, at least 0. Throws InputError.
+std::pair<int, int> parseFrames(const std::string& text) {
+  int first = 0, last = 0, used = 0;
+  const int read = std::sscanf(text.c_str(), "%8d-%8d%n", &first, &last, &used);
+  if (read != 2 || static_cast<size_t>(used) != text.size() || first < 0 || last < first)
+    throw InputError({}, "--frames '" + text + "' should be FIRST-LAST, as in 1-48");
+  return {first, last};
+}
+
+/// The options as typed, before they are understood.
+struct Arguments {
+  RenderOptions render;
+  std::string size = "960x540", windowSize = "1280x720", frames, error, filter = "hardware", tolerance;
+  std::string picture, reference;
+  double step = 0.0, exposure = 0.0;
+  bool json = false;
+};
+
+void addRenderOptions(CLI::App& app, Arguments& a) {
+  app.add_option("FILE", a.render.file, "The .vdb to show");
+  app.add_option("--render", a.render.out, "Render to OUT.exr or OUT.png without a display, and quit");
+  app.add_option("--size", a.size, "Size of the rendered picture, pixels")->capture_default_str();
+  app.add_option("--window-size", a.windowSize, "Size of the window, pixels")->capture_default_str();
+  app.add_option("--method", a.render.method, "How radiance is found")->capture_default_str();
+  app.add_option("--scene", a.render.scene, "A scene, or any YAML file with a top-level scene:");
+  app.add_option("--grid", a.render.grid,
+                 "The grid to show (default: density, else the first float fog grid)");
+  app.add_option("--spp", a.render.samples, "Samples a pixel")
+      ->capture_default_str()
+      ->check(CLI::Range(1u, 1u << 20));
+  app.add_option("--step", a.step, "Length of a step, voxels (default: the scene's, 0.5)")
+      ->check(CLI::Range(0.01, 100.0));
+  app.add_option("--error", a.error, "Relative RMSE to reach, as in 1%");
+  app.add_option("--stats", a.render.stats, "Write time, samples and memory to a JSON file");
+  app.add_option("--seed", a.render.seed, "Seed of all random numbers")->capture_default_str();
+  app.add_option("--exposure", a.exposure,
+                 "Exposure of PNG and window, EV (default: 0 with --scene, chosen from the picture without)")
+      ->check(CLI::Range(-64.0, 64.0));
+  app.add_flag("--aov", a.render.aov, "Add transmittance and depth to an EXR");
+  app.add_option("--filter", a.filter, "How densities are read between samples")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"exact", "hardware"}));
+  app.add_option("--frames", a.frames, "Render frames A-B, both included, to OUT_####");
+}
+
+int renderOrShow(Arguments& a, bool stepGiven, bool exposureGiven) {
+  if (a.render.file.empty()) throw InputError({}, "no file is given", "try nephele-preview --help");
+  if (!a.error.empty()) throw InputError({}, "--error is not built yet");
+  if (stepGiven) a.render.stepVoxels = a.step;
+  if (exposureGiven) a.render.exposureEv = a.exposure;
+  a.render.filter = a.filter == "exact" ? Filter::exact : Filter::hardware;
+  if (!a.frames.empty()) a.render.frames = parseFrames(a.frames);
+  parseSize("--size", a.size, a.render.width, a.render.height);
+  if (!a.render.out.empty()) return renderCommand(a.render);
+  if (a.render.frames) throw InputError({}, "--frames needs --render");
+  AppOptions window;
+  window.render = a.render;
+  parseSize("--window-size", a.windowSize, window.width, window.height);
+  window.screenshotFolder = std::filesystem::current_path().string();
+  return runApp(window);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Shows and renders OpenVDB clouds.", "nephele-preview");
+  Arguments a;
+  app.set_version_flag("--version", "nephele-preview " + std::string(programVersion()));
+  addRenderOptions(app, a);
+  CLI::App* compare =
+      app.add_subcommand("compare", "Hold a picture against a reference; exit 3 if over the tolerance");
+  compare->add_option("A", a.picture, "The picture, .exr")->required();
+  compare->add_option("B", a.reference, "The reference, .exr")->required();
+  compare->add_option("--tolerance", a.tolerance, "Largest relative RMSE, as in 0.03 or 3%");
+  compare->add_flag("--json", a.json, "Print JSON");
+  CLI::App* chart = app.add_subcommand("chart", "Chart methods against truth (not built yet)");
+  chart->allow_extras();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitInput;
+  }
+  if (chart->parsed()) throw InputError({}, "chart is not built yet");
+  if (compare->parsed()) {
+    std::optional<double> tolerance;
+    if (!a.tolerance.empty()) tolerance = parseTolerance(a.tolerance);
+    return compareCommand(a.picture, a.reference, tolerance, a.json);
+  }
+  return renderOrShow(a, app.count("--step") > 0, app.count("--exposure") > 0);
+}
+
+}  // namespace
+}  // namespace nephele
+
+int main(int argc, char** argv) {
+  return nephele::runGuarded([&] { return nephele::run(argc, argv); });
+}

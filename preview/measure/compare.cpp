@@ -1,0 +1,132 @@
+// Picture errors. Depends on base and nlohmann_json.
+#include "preview/measure/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "base/error.h"
+
+namespace nephele {
+namespace {
+
+constexpr float kSeenAlpha = 1e-3f;
+constexpr double kFloorShare =
+    1e-3;  // of the reference's maximum: darker pairs count as if they were this bright
+constexpr double kTailShare = 0.99;
+
+const std::vector<float>& planeOf(const Picture& picture, const std::string& pictureName,
+                                  const std::string& name) {
+  const int at = picture.find(name);
+  if (at < 0) throw InputError({pictureName}, "the picture has no channel '" + name + "'");
+  const std::vector<float>& plane = picture.planes[static_cast<size_t>(at)];
+  for (float value : plane)
+    if (!std::isfinite(value))
+      throw InputError({pictureName}, "channel '" + name + "' holds a value that is not finite");
+  return plane;
+}
+
+/// Indices of the pixels to compare.
+std::vector<size_t> seenPixels(const Picture& a, const Picture& b) {
+  const int alphaA = a.find("A"), alphaB = b.find("A");
+  const size_t count = static_cast<size_t>(a.width) * static_cast<size_t>(a.height);
+  std::vector<size_t> seen;
+  for (size_t i = 0; i < count; ++i) {
+    const bool inA = alphaA < 0 || a.planes[static_cast<size_t>(alphaA)][i] > kSeenAlpha;
+    const bool inB = alphaB < 0 || b.planes[static_cast<size_t>(alphaB)][i] > kSeenAlpha;
+    if (inA || inB) seen.push_back(i);
+  }
+  return seen;
+}
+
+double ratio(double numerator, double denominator) {
+  if (numerator == 0.0) return 0.0;
+  return denominator != 0.0 ? numerator / denominator
+                            : std::copysign(std::numeric_limits<double>::infinity(), numerator);
+}
+
+/// Adds one channel's share to the means, and its relative pair errors to `pairs`.
+void addChannel(const std::vector<float>& x, const std::vector<float>& r, const std::vector<size_t>& seen,
+                Comparison& comparison, std::vector<double>& pairs, double floor) {
+  constexpr double kChannels = 3.0;
+  double squares = 0.0, differences = 0.0, sum = 0.0;
+  for (size_t i : seen) {
+    const double difference = double{x[i]} - double{r[i]};
+    squares += difference * difference;
+    differences += difference;
+    sum += double{r[i]};
+    const double scale = std::max({std::abs(double{x[i]}), std::abs(double{r[i]}), floor});
+    pairs.push_back(ratio(std::abs(difference), scale));
+  }
+  const double count = static_cast<double>(seen.size());
+  comparison.relativeRmse += ratio(std::sqrt(squares / count), std::abs(sum / count)) / kChannels;
+  comparison.bias += ratio(differences / count, std::abs(sum / count)) / kChannels;
+}
+
+}  // namespace
+
+Comparison comparePictures(const Picture& picture, const std::string& pictureName, const Picture& reference,
+                           const std::string& referenceName) {
+  if (picture.width != reference.width || picture.height != reference.height)
+    throw InputError({pictureName}, "the picture is " + std::to_string(picture.width) + "x" +
+                                        std::to_string(picture.height) + " pixels and '" + referenceName +
+                                        "' is " + std::to_string(reference.width) + "x" +
+                                        std::to_string(reference.height));
+  const std::vector<size_t> seen = seenPixels(picture, reference);
+  Comparison comparison;
+  comparison.pixels = seen.size();
+  double brightest = 0.0;
+  for (const char* name : {"R", "G", "B"})
+    for (float value : planeOf(reference, referenceName, name))
+      brightest = std::max(brightest, std::abs(double{value}));
+  std::vector<double> pairs;
+  for (const char* name : {"R", "G", "B"}) {
+    const std::vector<float>& x = planeOf(picture, pictureName, name);
+    if (!seen.empty())
+      addChannel(x, planeOf(reference, referenceName, name), seen, comparison, pairs,
+                 kFloorShare * brightest);
+  }
+  if (pairs.empty()) return comparison;
+  std::sort(pairs.begin(), pairs.end());
+  comparison.p99 = pairs[static_cast<size_t>(kTailShare * static_cast<double>(pairs.size() - 1))];
+  comparison.maximum = pairs.back();
+  return comparison;
+}
+
+std::string comparisonAsText(const Comparison& comparison) {
+  std::ostringstream out;
+  out << "relative RMSE " << comparison.relativeRmse << ", bias " << comparison.bias << ", p99 "
+      << comparison.p99 << ", max " << comparison.maximum << " over " << comparison.pixels << " pixels\n";
+  return out.str();
+}
+
+std::string comparisonAsJson(const Comparison& comparison) {
+  // JSON has no infinity: such a figure becomes null.
+  return nlohmann::ordered_json{{"pixels", comparison.pixels},
+                                {"relative_rmse", comparison.relativeRmse},
+                                {"bias", comparison.bias},
+                                {"p99", comparison.p99},
+                                {"max", comparison.maximum}}
+             .dump(2) +
+         "\n";
+}
+
+double parseTolerance(const std::string& text) {
+  char* end = nullptr;
+  double value = std::strtod(text.c_str(), &end);
+  std::string rest = text.empty() ? "empty" : end;
+  if (rest == "%") {
+    constexpr double kPercent = 100.0;
+    value /= kPercent;
+    rest.clear();
+  }
+  if (end == text.c_str() || !rest.empty() || !std::isfinite(value) || value < 0.0)
+    throw InputError({}, "'" + text + "' is no tolerance; write 0.03 or 3%");
+  return value;
+}
+
+}  // namespace nephele

@@ -1,0 +1,70 @@
+// A method finds radiance along rays: one interface, and one table row for each method that the project
+// knows. Depends on scene and volume/bricks.h; knows no GL. Charts and commands reach methods through this
+// alone.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/picture.h"
+#include "preview/filter.h"
+#include "preview/viewed_scene.h"
+#include "volume/bricks.h"
+
+namespace nephele {
+
+/// What is fixed while a method lives.
+struct MethodOptions {
+  Filter filter = Filter::hardware;
+};
+
+/// One picture to make.
+struct PictureRequest {
+  int width = 960;
+  int height = 540;
+  unsigned samples = 4;  // a pixel
+  unsigned seed = 0;
+  bool quiet = false;  // no progress bar
+};
+
+/// What a picture cost.
+struct PictureCost {
+  double milliseconds = 0.0;            // from the first draw to the last pixel read back
+  double densitySamplesPerPixel = 0.0;  // densities read for the whole picture / pixels
+  uint64_t gpuBytes = 0;                // bricks, index, picture, parameters
+};
+
+/// One way to find radiance. Used from the thread that made it.
+class Method {
+ public:
+  virtual ~Method() = default;
+  /// Takes a volume in; must be called before render, and may be called again for another frame of a
+  /// sequence.
+  virtual void setVolume(const BrickVolume& bricks) = 0;
+  /// Renders linear radiance and alpha, premultiplied, with planes R, G, B, A, transmittance.R, .G, .B,
+  /// depth. An empty volume gives a picture without medium. Throws InputError for settings that cannot be
+  /// rendered, else WorldError.
+  virtual Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) = 0;
+
+  /// Who computed: GL_RENDERER, and the seconds that starting the driver and building the shaders took.
+  std::string renderer;
+  double secondsDriver = 0.0;
+  double secondsShaders = 0.0;
+};
+
+struct MethodRow {
+  std::string_view name;
+  std::string_view sentence;
+  std::unique_ptr<Method> (*make)(const MethodOptions&);  // nullptr: known, not built yet
+};
+
+/// Every method of MODEL.md, section 2, in its order.
+std::span<const MethodRow> methods();
+
+/// The row of that name. Throws InputError where it is unknown ("did you mean") or not built yet.
+const MethodRow& findMethod(const std::string& name);
+
+}  // namespace nephele

@@ -1,0 +1,253 @@
+// Headless rendering and comparing. Depends on preview, volume, base and nlohmann_json.
+#include "preview/render_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/files.h"
+#include "preview/measure/compare.h"
+#include "preview/method.h"
+#include "preview/resolve.h"
+
+namespace nephele {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr size_t kColourPlanes = 4;  // R, G, B, A come first
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string padded(int frame, size_t width) {
+  std::ostringstream out;
+  out << std::setw(static_cast<int>(width)) << std::setfill('0') << frame;
+  return out.str();
+}
+
+/// Replaces the last run of # in the file name; empty where there is none.
+std::string replaceHashes(const std::string& path, int frame) {
+  const size_t last = path.rfind('#');
+  if (last == std::string::npos) return {};
+  size_t first = last;
+  while (first > 0 && path[first - 1] == '#') --first;
+  return path.substr(0, first) + padded(frame, last + 1 - first) + path.substr(last + 1);
+}
+
+bool hasExtension(const std::string& path, const std::string& extension) {
+  return std::filesystem::path(path).extension() == extension;
+}
+
+void addEnvironment(Picture& picture, const Environment& environment) {
+  const size_t pixels = picture.planes[0].size();
+  for (size_t c = 0; c < environment.constant.size(); ++c) {
+    const float radiance = static_cast<float>(environment.constant[c]);
+    for (size_t i = 0; i < pixels; ++i)
+      picture.planes[c][i] += picture.planes[kColourPlanes + c][i] * radiance;
+  }
+}
+
+/// The backdrop is no light: exposure, which the writer applies to all, is taken out of it.
+Backdrop backdropOf(const Scene& scene, double exposureEv) {
+  Backdrop backdrop;  // black where the environment is in the picture already
+  if (scene.environment.show) return backdrop;
+  for (size_t c = 0; c < backdrop.top.size(); ++c) {
+    backdrop.bottom[c] = static_cast<float>(scene.backdrop.bottom[c] * std::exp2(-exposureEv));
+    backdrop.top[c] = static_cast<float>(scene.backdrop.top[c] * std::exp2(-exposureEv));
+  }
+  return backdrop;
+}
+
+void checkOptions(const RenderOptions& options) {
+  Diagnostics complaints;
+  const bool exr = hasExtension(options.out, ".exr");
+  if (!exr && !hasExtension(options.out, ".png"))
+    complaints.add({}, "--render '" + options.out + "' should end in .exr or .png");
+  if (options.aov && !exr) complaints.add({}, "--aov needs an .exr: a .png holds no further channels");
+  if (options.samples == 0) complaints.add({}, "--spp should be at least 1");
+  if (options.frames && options.frames->first > options.frames->second)
+    complaints.add({}, "--frames: the first frame is after the last");
+  complaints.throwIfAny();
+}
+
+/// Sums over frames, for --stats.
+struct Totals {
+  int frames = 0;
+  double secondsLoad = 0.0;
+  PictureCost cost;
+};
+
+void writeStats(const std::string& path, const Totals& totals, const Method& method) {
+  const double frames = totals.frames;
+  const nlohmann::ordered_json stats{{"seconds_load", totals.secondsLoad / frames},
+                                     {"ms_per_frame", totals.cost.milliseconds / frames},
+                                     {"samples_per_pixel", totals.cost.densitySamplesPerPixel / frames},
+                                     {"gpu_bytes", totals.cost.gpuBytes},
+                                     {"gl_renderer", method.renderer},
+                                     {"seconds_driver", method.secondsDriver},
+                                     {"seconds_shaders", method.secondsShaders}};
+  const std::string text = stats.dump(2) + "\n";
+  writeWhole(path, [&](const std::string& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) throw WorldError("cannot write '" + path + "'");
+  });
+}
+
+/// Renders one frame after another; the first one chooses camera, medium and exposure for all, so that
+/// nothing flickers.
+class Sequence {
+ public:
+  explicit Sequence(const RenderOptions& options)
+      : options_(options),
+        row_(findMethod(options.method)),
+        scene_(openScene(options.scene, options.stepVoxels)) {}
+
+  void frame(const std::string& in, const std::string& out) {
+    const auto start = Clock::now();
+    const BrickVolume bricks = openVolume(in, options_.grid);
+    totals_.secondsLoad += secondsSince(start);
+    if (!view_) {
+      std::string sentence;
+      view_ = resolveScene(scene_, bricks, static_cast<double>(options_.width) / options_.height, sentence);
+      std::cerr << sentence << '\n';
+      method_ = row_.make({options_.filter});
+    }
+    method_->setVolume(bricks);
+    PictureCost cost;
+    Picture picture = method_->render(
+        *view_, {options_.width, options_.height, options_.samples, options_.seed, false}, cost);
+    if (!exposureEv_) exposureEv_ = hasExtension(out, ".png") ? exposureFor(options_, picture) : 0.0;
+    writePicture(out, std::move(picture), scene_, *exposureEv_, options_.aov);
+    ++totals_.frames;
+    totals_.cost.milliseconds += cost.milliseconds;
+    totals_.cost.densitySamplesPerPixel += cost.densitySamplesPerPixel;
+    totals_.cost.gpuBytes = std::max(totals_.cost.gpuBytes, cost.gpuBytes);
+  }
+
+  void finish() const {
+    if (!options_.stats.empty()) writeStats(options_.stats, totals_, *method_);
+  }
+
+ private:
+  const RenderOptions& options_;
+  const MethodRow& row_;
+  Scene scene_;
+  std::optional<ViewedScene> view_;
+  std::optional<double> exposureEv_;
+  std::unique_ptr<Method> method_;
+  Totals totals_;
+};
+
+}  // namespace
+
+Scene openScene(const std::string& path, std::optional<double> stepVoxels) {
+  Scene scene;
+  scene.look = Look::report;  // what a file opens in where no scene says otherwise
+  if (!path.empty()) scene = loadScene(path);
+  if (stepVoxels) scene.march.stepVoxels = *stepVoxels;
+  if (scene.look == Look::report)
+    std::cerr << "look: report; the looks 'report' and 'physical' do not differ in anything yet\n";
+  return scene;
+}
+
+BrickVolume openVolume(const std::string& path, const std::string& grid) {
+  BrickVolume bricks = loadBricks(path, grid);
+  for (const std::string& note : bricks.notes) std::cerr << path << ": " << note << '\n';
+  if (bricks.empty())
+    std::cerr << path << ": the grid '" << bricks.gridName << "' is empty: there is nothing to see\n";
+  return bricks;
+}
+
+std::string framePath(const std::string& pattern, int frame) {
+  if (std::string path = replaceHashes(pattern, frame); !path.empty()) return path;
+  const std::filesystem::path path(pattern);
+  const std::string stem = path.stem().string();
+  size_t first = stem.size();
+  while (first > 0 && stem[first - 1] >= '0' && stem[first - 1] <= '9') --first;
+  if (first == stem.size())
+    throw InputError({pattern},
+                     "--frames needs a file name with a frame number, as in name_0001.vdb or name_####.vdb");
+  const std::string name =
+      stem.substr(0, first) + padded(frame, stem.size() - first) + path.extension().string();
+  return (path.parent_path() / name).string();
+}
+
+std::string frameOutput(const std::string& pattern, int frame) {
+  if (std::string path = replaceHashes(pattern, frame); !path.empty()) return path;
+  constexpr size_t kDigits = 4;
+  const std::filesystem::path path(pattern);
+  const std::string name = path.stem().string() + "_" + padded(frame, kDigits) + path.extension().string();
+  return (path.parent_path() / name).string();
+}
+
+void writePicture(const std::string& path, Picture picture, const Scene& scene, double exposureEv, bool aov) {
+  if (scene.environment.show) addEnvironment(picture, scene.environment);
+  if (hasExtension(path, ".png")) {
+    writePng(path, picture, static_cast<float>(exposureEv), backdropOf(scene, exposureEv));
+    return;
+  }
+  if (!aov) {
+    picture.names.resize(kColourPlanes);
+    picture.planes.resize(kColourPlanes);
+  }
+  writeExr(path, picture);
+}
+
+double chooseExposure(const Picture& picture) {
+  constexpr float kMostlyMedium = 0.5f;
+  constexpr double kBrightShare = 0.95, kShownAt = 0.6, kMostEv = 16.0;
+  std::vector<double> radiances;
+  for (size_t i = 0; i < picture.planes[3].size(); ++i) {
+    const double alpha = double{picture.planes[3][i]};
+    if (alpha > double{kMostlyMedium})
+      radiances.push_back(
+          (double{picture.planes[0][i]} + double{picture.planes[1][i]} + double{picture.planes[2][i]}) /
+          (3.0 * alpha));
+  }
+  if (radiances.empty()) return 0.0;
+  const auto bright =
+      radiances.begin() + static_cast<std::ptrdiff_t>(kBrightShare * static_cast<double>(radiances.size()));
+  std::nth_element(radiances.begin(), bright, radiances.end());
+  if (!(*bright > 0.0)) return 0.0;
+  return std::clamp(std::log2(-std::log(1.0 - kShownAt) / *bright), -kMostEv, kMostEv);
+}
+
+double exposureFor(const RenderOptions& options, const Picture& picture) {
+  if (options.exposureEv) return *options.exposureEv;
+  if (!options.scene.empty()) return 0.0;
+  const double exposureEv = chooseExposure(picture);
+  std::cerr << "exposure: auto, " << exposureEv << " EV\n";
+  return exposureEv;
+}
+
+int renderCommand(const RenderOptions& options) {
+  checkOptions(options);
+  Sequence sequence(options);
+  if (options.frames) {
+    for (int frame = options.frames->first; frame <= options.frames->second; ++frame)
+      sequence.frame(framePath(options.file, frame), frameOutput(options.out, frame));
+  } else {
+    sequence.frame(options.file, options.out);
+  }
+  sequence.finish();
+  return kExitDone;
+}
+
+int compareCommand(const std::string& picture, const std::string& reference, std::optional<double> tolerance,
+                   bool json) {
+  const Comparison comparison = comparePictures(readExr(picture), picture, readExr(reference), reference);
+  std::cout << (json ? comparisonAsJson(comparison) : comparisonAsText(comparison)) << std::flush;
+  return tolerance && !(comparison.relativeRmse <= *tolerance) ? kExitNo : kExitDone;
+}
+
+}  // namespace nephele

@@ -1,0 +1,148 @@
+// Framing and auto-exposure. Depends on scene and volume/bricks.h.
+#include "preview/resolve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <glm/matrix.hpp>
+#include <sstream>
+
+namespace nephele {
+namespace {
+
+using glm::dvec3;
+
+constexpr double kFrameMargin = 1.05;
+constexpr double kExposureDepth = 8.0;  // dense enough to show a form, thin enough to show what is inside
+constexpr double kExposureG = 0.6;
+
+/// "8", "8 8 8", "[8, 8, 8]" → numbers; nothing where there is anything else in the text.
+std::vector<double> numbersIn(std::string text) {
+  for (char& c : text)
+    if (c == '[' || c == ']' || c == ',' || c == '(' || c == ')') c = ' ';
+  std::istringstream in(text);
+  std::vector<double> numbers;
+  for (std::string word; in >> word;) {
+    char* end = nullptr;
+    numbers.push_back(std::strtod(word.c_str(), &end));
+    if (*end != '\0' || !std::isfinite(numbers.back())) return {};
+  }
+  return numbers;
+}
+
+Rgb rgbFrom(const BrickVolume& bricks, const std::string& key) {
+  const auto found = bricks.metadata.find(key);
+  if (found == bricks.metadata.end()) return {0.0, 0.0, 0.0};
+  const std::vector<double> numbers = numbersIn(found->second);
+  const bool negative = std::any_of(numbers.begin(), numbers.end(), [](double v) { return v < 0.0; });
+  if ((numbers.size() != 1 && numbers.size() != 3) || negative)
+    throw InputError({bricks.path}, "the metadata '" + key + "' is '" + found->second +
+                                        "', and should be one or three numbers, at least 0");
+  return numbers.size() == 1 ? Rgb{numbers[0], numbers[0], numbers[0]}
+                             : Rgb{numbers[0], numbers[1], numbers[2]};
+}
+
+double gFrom(const BrickVolume& bricks) {
+  const auto found = bricks.metadata.find("g");
+  if (found == bricks.metadata.end()) return 0.0;
+  const std::vector<double> numbers = numbersIn(found->second);
+  if (numbers.size() != 1 || !(std::abs(numbers[0]) < 1.0))
+    throw InputError({bricks.path},
+                     "the metadata 'g' is '" + found->second + "', and should lie between -1 and 1");
+  return numbers[0];
+}
+
+std::string textOf(const Rgb& rgb) {
+  std::ostringstream out;
+  out << rgb[0];
+  if (rgb[1] != rgb[0] || rgb[2] != rgb[0]) out << ' ' << rgb[1] << ' ' << rgb[2];
+  return out.str();
+}
+
+std::string describe(const std::string& source, const Medium& medium) {
+  std::ostringstream out;
+  out << "medium: " << source << ": sigma_s " << textOf(medium.sigmaS) << ", sigma_a "
+      << textOf(medium.sigmaA) << ", g " << medium.g;
+  return out.str();
+}
+
+Medium exposedMedium(const BrickVolume& bricks) {
+  const double voxel = std::abs(glm::determinant(glm::dmat3(bricks.worldFromIndex)));
+  const double edge = std::cbrt(static_cast<double>(bricks.activeVoxels) * voxel);
+  const double column = bricks.meanActive * edge;
+  Medium medium;
+  const double sigma = column > 0.0 ? kExposureDepth / column : 1.0;
+  medium.sigmaS = {sigma, sigma, sigma};
+  medium.g = kExposureG;
+  return medium;
+}
+
+}  // namespace
+
+dvec3 upOf(const BrickVolume& bricks) {
+  const auto creator = bricks.metadata.find("creator");
+  const bool houdini = creator != bricks.metadata.end() && creator->second.starts_with("Houdini");
+  if (houdini && !bricks.metadata.contains("up_axis")) return dvec3(0.0, 1.0, 0.0);
+  return bricks.upAxis == 'y' ? dvec3(0.0, 1.0, 0.0) : dvec3(0.0, 0.0, 1.0);
+}
+
+Camera frameCamera(const BrickVolume& bricks, const dvec3& up, double fov, double aspect) {
+  dvec3 corners[8];
+  dvec3 centre(0.0);
+  for (int i = 0; i < 8; ++i) {
+    dvec3 index;
+    for (int axis = 0; axis < 3; ++axis)
+      index[axis] = (i >> axis & 1) != 0 ? bricks.activeMax[axis] : bricks.activeMin[axis] - 1;
+    corners[i] = dvec3(bricks.worldFromIndex * glm::dvec4(index, 1.0));
+    centre += 0.125 * corners[i];
+  }
+  // From the side, so that a light over either shoulder models the form: 20 degrees round, 17 above.
+  constexpr double kAside = 1.5, kBack = 4.0, kAbove = 1.3;
+  const dvec3 right(1.0, 0.0, 0.0);
+  const dvec3 front = glm::cross(right, up);  // −Y where Z is up, +Z where Y is up
+  const dvec3 from = glm::normalize(kAside * right + kBack * front + kAbove * up);
+  const double tanY = std::tan(0.5 * fov), tanX = tanY * aspect;
+  const dvec3 rightAxis = glm::normalize(glm::cross(up, from)), upAxis = glm::cross(from, rightAxis);
+  // A corner is in the picture where its offset across the view is at most its distance along it times the
+  // tangent.
+  double distance = 0.0;
+  for (const dvec3& corner : corners) {
+    const dvec3 offset = kFrameMargin * (corner - centre);
+    const double towards = glm::dot(offset, from);
+    distance = std::max({distance, towards + std::abs(glm::dot(offset, rightAxis)) / tanX,
+                         towards + std::abs(glm::dot(offset, upAxis)) / tanY});
+  }
+  Camera camera;
+  camera.target = centre;
+  camera.position = centre + distance * from;
+  camera.up = up;
+  camera.fov = fov;
+  return camera;
+}
+
+ChosenMedium chooseMedium(const Scene& scene, const BrickVolume& bricks) {
+  if (scene.medium) return {*scene.medium, MediumSource::scene, describe("the scene's", *scene.medium)};
+  if (bricks.metadata.contains("sigma_s") || bricks.metadata.contains("sigma_a")) {
+    const Medium medium{rgbFrom(bricks, "sigma_s"), rgbFrom(bricks, "sigma_a"), gFrom(bricks)};
+    return {medium, MediumSource::file, describe("the file's metadata", medium)};
+  }
+  const Medium medium = exposedMedium(bricks);
+  return {medium, MediumSource::exposure,
+          describe("auto-exposure (mean density 8 optical depths thick)", medium)};
+}
+
+ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double aspect,
+                         std::string& mediumSentence) {
+  ChosenMedium chosen = chooseMedium(scene, bricks);
+  mediumSentence = std::move(chosen.sentence);
+  ViewedScene view{scene, Camera{}, chosen.medium};
+  if (scene.camera) {
+    view.camera = *scene.camera;
+    if (!scene.cameraUpGiven) view.camera.up = upOf(bricks);
+  } else {
+    view.camera = frameCamera(bricks, upOf(bricks), Camera{}.fov, aspect);
+  }
+  return view;
+}
+
+}  // namespace nephele

@@ -1,0 +1,39 @@
+// What a scene leaves open, decided from the volume: the camera and the medium. Depends on scene and
+// volume/bricks.h.
+#pragma once
+
+#include <string>
+
+#include "preview/viewed_scene.h"
+#include "volume/bricks.h"
+
+namespace nephele {
+
+/// The world's unit vector along the file's up axis: its metadata's up_axis, else Y for files that Houdini
+/// wrote, else Z.
+glm::dvec3 upOf(const BrickVolume& bricks);
+
+/// Looks at the centre of the medium's support from the right front and slightly above, as
+/// near as its eight corners stay in the picture with a little margin. An empty volume is a box of two
+/// voxels.
+Camera frameCamera(const BrickVolume& bricks, const glm::dvec3& up, double fov, double aspect);
+
+/// Where a medium comes from.
+enum class MediumSource { scene, file, exposure };
+
+struct ChosenMedium {
+  Medium medium;
+  MediumSource source = MediumSource::scene;
+  std::string sentence;  // for stderr: which source, and the values
+};
+
+/// The scene's medium, else that of the file's metadata (sigma_s, sigma_a, g), else density auto-exposure:
+/// albedo 1, g 0.6, and σ_t such that the mean active density over the edge of a cube of the active volume
+/// gives an optical depth of 8. Throws InputError where the metadata does not hold a medium.
+ChosenMedium chooseMedium(const Scene& scene, const BrickVolume& bricks);
+
+/// Camera and medium of a scene, given or chosen. A camera without `up` takes the file's.
+ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double aspect,
+                         std::string& mediumSentence);
+
+}  // namespace nephele

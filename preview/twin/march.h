@@ -1,0 +1,22 @@
+// The march's shared text as C++: a struct over any source of brick densities. Depends on shaders/shared
+// alone. Compile what includes it with -Wconversion -Wdouble-promotion.
+#pragma once
+
+#include "shaders/shared/leaves.h"
+
+namespace nephele::shared {
+
+/// `Bricks` has `uint slot(ivec3 brick) const` (0: no density) and `float density(uint slot, vec3 position)
+/// const` (position in [0, 8] voxels from the brick's corner). Thread-safe to copy and use where Bricks is.
+template <class Bricks>
+struct March {
+  MarchParameters params;
+  const Bricks* bricks;
+
+  uint brickSlot(ivec3 brick) const { return bricks->slot(brick); }
+  float brickDensity(uint slot, vec3 position) const { return bricks->density(slot, position); }
+
+#include "shaders/shared/march.glsl"
+};
+
+}  // namespace nephele::shared

@@ -1,0 +1,7 @@
+// A triangle that fills the screen, without any buffer: corners (−1, −1), (3, −1), (−1, 3).
+#version 450 core
+
+void main() {
+  vec2 corner = vec2(float((gl_VertexID & 1) << 2) - 1.0, float((gl_VertexID & 2) << 1) - 1.0);
+  gl_Position = vec4(corner, 0.0, 1.0);
+}

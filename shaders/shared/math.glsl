@@ -1,0 +1,19 @@
+// Functions that language libraries round each in their own way, written out, so that every target gives the same bits.
+
+// e^x, within 3e-7 of its value for −87 ≤ x ≤ 88; 0 below (the smallest normal float is e^−87.34), infinity above. NaN stays
+// NaN. x = k ln 2 + r with |r| ≤ ½ ln 2, ln 2 in two parts whose products with k are exact or small [Cody and Waite 1980],
+// e^r by its series, cut where the rest is below 6e-9.
+NPH_FN float exponential(float x) {
+  if (x != x) return x;
+  if (x < -87.0f) return 0.0f;
+  if (x > 88.0f) return uintBitsToFloat(0x7f800000u);
+  float k = floor(x * 1.44269504f + 0.5f);  // 1/ln 2
+  float r = (x - k * 0.693359375f) - k * -2.12194440e-4f;
+  float series = 1.0f / 720.0f + r * (1.0f / 5040.0f);
+  series = 1.0f / 120.0f + r * series;
+  series = 1.0f / 24.0f + r * series;
+  series = 1.0f / 6.0f + r * series;
+  series = 0.5f + r * series;
+  float power = 1.0f + (r + r * r * series);
+  return power * uintBitsToFloat(uint(int(k) + 127) << 23u);  // 127: the exponent's bias, 23: its place
+}

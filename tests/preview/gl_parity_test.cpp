@@ -1,0 +1,187 @@
+// One text, two compilers: the march on the CPU and on the GPU give the same picture, and mutants do not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "preview/measure/compare.h"
+#include "preview/twin/march_picture.h"
+#include "tests/preview/gl_bench.h"
+
+namespace nephele::testing_gl {
+namespace {
+
+constexpr int kWidth = 72, kHeight = 64;
+constexpr double kGate = 1e-4;
+constexpr glm::vec2 kSubPixel(0.37f, 0.61f);
+constexpr unsigned kNumber = 3;
+
+/// A cloud under all that the march knows: two suns, a point, octaves, sky, colours, random starts, unequal
+/// voxels.
+struct ParityCase {
+  BrickVolume bricks;
+  ViewedScene view;
+  shared::MarchParameters parameters;
+
+  ParityCase() {
+    glm::dmat4 worldFromIndex(1.0);
+    worldFromIndex[0] = glm::dvec4(0.04, 0.01, 0.0, 0.0);
+    worldFromIndex[1] = glm::dvec4(-0.01, 0.05, 0.005, 0.0);
+    worldFromIndex[2] = glm::dvec4(0.0, 0.0, 0.045, 0.0);
+    bricks = volumeOf(glm::ivec3(72), glm::ivec3(-13, 5, 40), worldFromIndex, [](const glm::dvec3& p) {
+      return cloudDensity(p, glm::dvec3(23.0, 41.0, 76.0), 34.0);
+    });
+    const glm::dvec3 centre(worldFromIndex * glm::dvec4(23.0, 41.0, 76.0, 1.0));
+    view.camera.target = centre;
+    view.camera.position = centre + glm::dvec3(2.4, -4.0, 1.5);
+    view.medium = {{4.0, 5.0, 6.0}, {0.2, 0.4, 0.1}, 0.6};
+    view.scene.octaves = {3, 0.6, 0.4, 0.7};
+    view.scene.environment.constant = {0.2, 0.3, 0.5};
+    view.scene.lights = {Sun{glm::normalize(glm::dvec3(0.3, 0.8, 0.5)), {3.0, 2.8, 2.5}},
+                         PointLight{centre + glm::dvec3(-1.0, 0.3, 1.2), {2.0, 1.0, 0.5}}};
+    parameters = marchParameters(view, bricks, kWidth, kHeight, 7, true);
+  }
+};
+
+const ParityCase& parityCase() {
+  static const ParityCase theCase;
+  return theCase;
+}
+
+const std::vector<TwinPixel>& twinPicture() {
+  static const std::vector<TwinPixel> pixels =
+      marchPicture(parityCase().bricks, parityCase().parameters, kWidth, kHeight, kSubPixel, kNumber);
+  return pixels;
+}
+
+/// 99th percentile of |a − b|/max(|a|, |b|, 1e-3 of the picture's maximum).
+double p99(const std::vector<double>& a, const std::vector<double>& b) {
+  const double floor = 1e-3 * *std::max_element(a.begin(), a.end());
+  std::vector<double> errors;
+  for (size_t i = 0; i < a.size(); ++i)
+    errors.push_back(std::abs(a[i] - b[i]) / std::max({std::abs(a[i]), std::abs(b[i]), floor}));
+  std::sort(errors.begin(), errors.end());
+  return errors[static_cast<size_t>(0.99 * static_cast<double>(errors.size() - 1))];
+}
+
+struct ParityError {
+  double radiance, transmittance;
+};
+
+/// Over the pixels that see the medium on either side: empty ones agree trivially.
+ParityError parityOf(const std::vector<TextChange>& changes) {
+  needContext();
+  MarchPass pass(Filter::exact, changes);
+  pass.setParameters(parityCase().parameters);
+  const Picture gpu = marchOnGpu(pass, parityCase().bricks, kWidth, kHeight, kSubPixel, kNumber).picture;
+  std::vector<double> a[2], b[2];
+  for (size_t i = 0; i < twinPicture().size(); ++i) {
+    const TwinPixel& twin = twinPicture()[i];
+    if (twin.transmittance.x == 1.0f && gpu.planes[4][i] == 1.0f) continue;
+    for (int c = 0; c < 3; ++c) {
+      const size_t plane = static_cast<size_t>(c);
+      a[0].push_back(double{twin.radiance[c]});
+      b[0].push_back(double{gpu.planes[plane][i]});
+      a[1].push_back(double{twin.transmittance[c]});
+      b[1].push_back(double{gpu.planes[4 + plane][i]});
+    }
+  }
+  EXPECT_GT(a[0].size(), 3000u);
+  return {p99(a[0], b[0]), p99(a[1], b[1])};
+}
+
+TEST(GlParity, CpuAndGpuAgree) {
+  const ParityError error = parityOf({});
+  std::printf("parity: p99 of radiance %.3g, of transmittance %.3g\n", error.radiance, error.transmittance);
+  EXPECT_LE(error.radiance, kGate);
+  EXPECT_LE(error.transmittance, kGate);
+}
+
+TEST(GlParity, EachMutantBreaksTheGate) {
+  const char* march = "shared/march.glsl";
+  const char* phase = "shared/phase.glsl";
+  const struct {
+    const char* name;
+    TextChange change;
+  } mutants[] = {
+      {"albedo x 1.001", {march, "source = vec3(params.sigmaS)", "source = 1.001f * vec3(params.sigmaS)"}},
+      {"extinction x 1.001",
+       {march, "(rho * ds) * vec3(params.sigmaT)", "(rho * ds) * 1.001f * vec3(params.sigmaT)"}},
+      {"g's sign", {phase, "toLight - forward * ray", "toLight + forward * ray"}},
+      {"step 1% longer",
+       {march, "params.sigmaS.w / length(direction)", "1.01f * params.sigmaS.w / length(direction)"}},
+      {"1/12 for 1/(4 pi)", {phase, "(4.0f * kPi * base * sqrt(base))", "(12.0f * base * sqrt(base))"}},
+      {"first shadow step dropped",
+       {march, "float dt = params.octaves.w / length(direction);",
+        "float dt = params.octaves.w / length(direction); tNear += dt;"}},
+      {"octaves' b is a", {march, "scattering *= params.octaves.y", "scattering *= params.octaves.x"}},
+      {"octaves' c left out", {march, "g *= params.octaves.z", "g *= 1.0f"}},
+      {"point light without falloff",
+       {march, "l.irradiance /= l.reach * l.reach", "l.irradiance /= l.reach"}},
+      {"sky twice",
+       {march, "vec3(params.environment) / density", "2.0f * vec3(params.environment) / density"}},
+      {"series x/2 -> 0.4 x", {"shared/step_integral.glsl", "x * (0.5f -", "x * (0.4f -"}},
+      {"a hundredth of a voxel off",
+       {"march.frag", "vec3 f = position - vec3(cell);", "vec3 f = position - vec3(cell) + 0.01;"}},
+  };
+  for (const auto& mutant : mutants) {
+    const ParityError error = parityOf({mutant.change});
+    std::printf("mutant '%s': p99 of radiance %.3g, of transmittance %.3g\n", mutant.name, error.radiance,
+                error.transmittance);
+    EXPECT_GT(std::max(error.radiance, error.transmittance), kGate) << mutant.name;
+  }
+}
+
+TEST(GlParity, LightingStepsTogetherCostsLittleAccuracy) {
+  needContext();
+  const auto render = [&](const std::vector<TextChange>& changes) {
+    MarchPass pass(Filter::exact, changes);
+    ViewedScene view = parityCase().view;
+    view.scene.environment.constant = {0.0, 0.0,
+                                       0.0};  // its directions are random and would drown the difference
+    pass.setParameters(marchParameters(view, parityCase().bricks, kWidth, kHeight, 7, false));
+    return marchOnGpu(pass, parityCase().bricks, kWidth, kHeight, kSubPixel, kNumber);
+  };
+  const FilmPicture together = render({});
+  const FilmPicture each = render({{"shared/march.glsl", "kLitTogetherSteps = 4", "kLitTogetherSteps = 1"}});
+  const Comparison error = comparePictures(together.picture, "together", each.picture, "each");
+  std::printf("steps lit together: %.3g times fewer densities, relative RMSE %.3g\n",
+              each.densitySamples / together.densitySamples, error.relativeRmse);
+  EXPECT_LT(error.relativeRmse, 5e-3);
+  EXPECT_GT(each.densitySamples, 1.5 * together.densitySamples);
+}
+
+TEST(GlParity, SkippingEmptyBricksChangesNothing) {
+  needContext();
+  // Two balls far apart: most bricks between them are empty.
+  const BrickVolume bricks =
+      volumeOf({120, 60, 60}, glm::ivec3(-7), glm::dmat4(1.0), [](const glm::dvec3& p) {
+        return cloudDensity(p, glm::dvec3(13.0, 20.0, 20.0), 16.0) +
+               cloudDensity(p, glm::dvec3(92.0, 31.0, 28.0), 14.0);
+      });
+  ViewedScene view;
+  view.camera.target = glm::dvec3(50.0, 25.0, 25.0);
+  view.camera.position = glm::dvec3(190.0, 60.0, 60.0);
+  view.medium = {{0.3, 0.3, 0.3}, {0.0, 0.0, 0.0}, 0.5};
+  view.scene.environment.constant = {0.5, 0.5, 0.5};
+  view.scene.lights = {Sun{glm::normalize(glm::dvec3(-1.0, -0.1, -0.05)), {3.0, 3.0, 3.0}}};
+  const auto render = [&](const std::vector<TextChange>& changes) {
+    MarchPass pass(Filter::exact, changes);
+    pass.setParameters(marchParameters(view, bricks, kWidth, kHeight, 1, true));
+    return marchOnGpu(pass, bricks, kWidth, kHeight, kSubPixel, kNumber);
+  };
+  const FilmPicture skipping = render({});
+  const FilmPicture full =
+      render({{"shared/march.glsl", "steps = max(1, int(min(floor(toExit - 1e-3f), 1e6f)));", "steps = 1;"}});
+  EXPECT_LT(skipping.densitySamples, 0.7 * full.densitySamples) << "nothing was skipped";
+  double worst = 0.0;
+  for (size_t plane = 0; plane < full.picture.planes.size(); ++plane)
+    for (size_t i = 0; i < full.picture.planes[plane].size(); ++i)
+      worst = std::max(
+          worst, std::abs(double{full.picture.planes[plane][i]} - double{skipping.picture.planes[plane][i]}));
+  std::printf("skipping: %.0f of %.0f densities read, largest difference %.3g\n", skipping.densitySamples,
+              full.densitySamples, worst);
+  EXPECT_EQ(worst, 0.0);
+}
+
+}  // namespace
+}  // namespace nephele::testing_gl

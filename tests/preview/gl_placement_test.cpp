@@ -1,0 +1,132 @@
+// Any affine transform, any distance from the origin, a camera inside: transmittance against the integral
+// along the ray taken through the transform in double precision. And volumes with nothing in them.
+#include <gtest/gtest.h>
+
+#include "preview/resolve.h"
+#include "tests/preview/gl_bench.h"
+
+namespace nephele::testing_gl {
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;
+const glm::ivec3 kSize(40, 28, 33);
+const glm::ivec3 kOrigin(-1005, 37, -8);
+
+double density(const glm::dvec3& p) {
+  // No symmetry, so that a mirrored or exchanged axis shows.
+  const glm::dvec3 q = p - glm::dvec3(kOrigin);
+  return cloudDensity(q, glm::dvec3(17.0, 12.0, 15.0), 15.0) +
+         (q.x > 30.0 && q.y > 18.0 && q.z < 9.0 ? 0.8 : 0.0);
+}
+
+glm::dmat4 rotatedShearedUnequal(double scale, const glm::dvec3& place) {
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  const glm::dmat3 rotation(glm::dvec3(c, s * 0.6, s * 0.8), glm::dvec3(-s, c * 0.6, c * 0.8),
+                            glm::dvec3(0.0, -0.8, 0.6));
+  const glm::dmat3 shear(glm::dvec3(1, 0, 0), glm::dvec3(0.4, 1, 0), glm::dvec3(-0.2, 0.3, 1));
+  const glm::dmat3 sides(glm::dvec3(1.0, 0, 0), glm::dvec3(0, 2.5, 0), glm::dvec3(0, 0, 0.6));
+  glm::dmat4 result(scale * (rotation * shear * sides));
+  result[3] = glm::dvec4(place, 1.0);
+  return result;
+}
+
+/// Largest difference of transmittance from the exact one over the picture; `seen` counts pixels that see the
+/// medium.
+double worstError(const BrickVolume& bricks, const Camera& camera, double depthAcross, int& seen) {
+  ViewedScene view;
+  view.camera = camera;
+  view.scene.lights.clear();
+  view.scene.march.stepVoxels = 0.1;
+  view.medium = chooseMedium(Scene{}, bricks).medium;
+  const double sigmaT = view.medium.sigmaS[0] * depthAcross / 8.0;
+  view.medium.sigmaS = {sigmaT, sigmaT, sigmaT};
+  MarchPass pass(Filter::exact);
+  pass.setParameters(marchParameters(view, bricks, kWidth, kHeight, 0, false));
+  const Picture picture = marchOnGpu(pass, bricks, kWidth, kHeight, {0.5f, 0.5f}, 0).picture;
+  const std::vector<float>& transmittance =
+      picture.planes[static_cast<size_t>(picture.find("transmittance.G"))];
+  double worst = 0.0;
+  seen = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const double exact =
+          std::exp(-sigmaT * exactColumn(bricks, cameraRay(camera, kWidth, kHeight, x + 0.5, y + 0.5)));
+      if (exact < 0.99) ++seen;
+      worst = std::max(worst, std::abs(exact - double{transmittance[static_cast<size_t>(y * kWidth + x)]}));
+    }
+  return worst;
+}
+
+void expectPlaced(double scale, const glm::dvec3& place, const char* name) {
+  needContext();
+  const BrickVolume bricks = volumeOf(kSize, kOrigin, rotatedShearedUnequal(scale, place), density);
+  const Camera framed = frameCamera(bricks, glm::dvec3(0, 0, 1), 0.6, static_cast<double>(kWidth) / kHeight);
+  int seen = 0;
+  const double outside = worstError(bricks, framed, 3.0, seen);
+  EXPECT_GT(seen, 300);
+  EXPECT_LT(outside, 1e-3) << name;
+  Camera inside = framed;
+  inside.position =
+      glm::dvec3(bricks.worldFromIndex * glm::dvec4(glm::dvec3(kOrigin) + glm::dvec3(16.0, 11.0, 14.0), 1.0));
+  inside.target = inside.position + (framed.target - framed.position) + glm::dvec3(0.1 * scale);
+  inside.fov = 1.4;
+  const double within = worstError(bricks, inside, 3.0, seen);
+  EXPECT_GT(seen, 300);
+  EXPECT_LT(within, 1e-3) << name;
+  Camera far = framed;
+  far.position = framed.target + 1e4 * (framed.position - framed.target);
+  far.fov = 2.0 * std::atan(1e-4 * std::tan(0.5 * framed.fov));
+  const double distant = worstError(bricks, far, 3.0, seen);
+  EXPECT_GT(seen, 300);
+  EXPECT_LT(distant, 1e-3) << name;
+  std::printf("%s: largest error of transmittance outside %.3g, inside %.3g, from 10^4 away %.3g\n", name,
+              outside, within, distant);
+}
+
+TEST(GlPlacement, RotatedShearedUnequalSides) {
+  expectPlaced(0.05, {3.0, -2.0, 1.0}, "rotated, sheared, unequal");
+}
+TEST(GlPlacement, MillionUnitsFromTheOrigin) {
+  expectPlaced(0.05, {1e6, -1e6, 2e6}, "10^6 units from the origin");
+}
+TEST(GlPlacement, TinyAndHugeWorlds) {
+  expectPlaced(1e-6, {0.0, 0.0, 0.0}, "voxels of 10^-6");
+  expectPlaced(1e6, {0.0, 0.0, 0.0}, "voxels of 10^6");
+}
+
+TEST(GlPlacement, EmptyVolumeIsAPictureOfNothing) {
+  needContext();
+  const BrickVolume bricks =
+      volumeOf(glm::ivec3(4), glm::ivec3(0), glm::dmat4(1.0), [](const glm::dvec3&) { return 0.0; });
+  ASSERT_TRUE(bricks.empty());
+  ViewedScene view;
+  view.camera = frameCamera(bricks, glm::dvec3(0, 0, 1), 0.6, 1.0);
+  MarchPass pass(Filter::hardware);
+  pass.setParameters(marchParameters(view, bricks, kWidth, kHeight, 0, true));
+  const Picture picture = marchOnGpu(pass, bricks, kWidth, kHeight, {0.5f, 0.5f}, 0).picture;
+  for (size_t plane = 0; plane < 4; ++plane)
+    for (float value : picture.planes[plane]) ASSERT_EQ(value, 0.0f);
+}
+
+TEST(GlPlacement, HardwareFilterIsNearTheExactOne) {
+  needContext();
+  const BrickVolume bricks = volumeOf(kSize, kOrigin, glm::dmat4(1.0), density);
+  ViewedScene view;
+  view.camera = frameCamera(bricks, glm::dvec3(0, 0, 1), 0.6, static_cast<double>(kWidth) / kHeight);
+  view.medium = chooseMedium(Scene{}, bricks).medium;
+  Picture pictures[2];
+  for (int i = 0; i < 2; ++i) {
+    MarchPass pass(i == 0 ? Filter::exact : Filter::hardware);
+    pass.setParameters(marchParameters(view, bricks, kWidth, kHeight, 0, true));
+    pictures[i] = marchOnGpu(pass, bricks, kWidth, kHeight, {0.5f, 0.5f}, 0).picture;
+  }
+  double worst = 0.0;
+  for (size_t i = 0; i < pictures[0].planes[3].size(); ++i)
+    worst = std::max(worst, std::abs(double{pictures[0].planes[3][i]} - double{pictures[1].planes[3][i]}));
+  std::printf("hardware filter against exact: largest difference of alpha %.3g\n", worst);
+  // Weights of 8 bits move a sample by up to 1/512 voxel; half a texel off would show as 0.1 and more.
+  EXPECT_LT(worst, 0.02);
+}
+
+}  // namespace
+}  // namespace nephele::testing_gl
