@@ -1,0 +1,128 @@
+"""The command-line cases of both programs, one a line: command, exit code, what stderr must hold, and the edit of a
+good recipe that makes the input wrong. Run by cases.py. Depends on nothing.
+"""
+from dataclasses import dataclass
+
+GOOD_RECIPE = """\
+up_axis: z
+assets:
+  ball:
+    voxel_size: 0.1
+    density:
+      sphere: { radius: 1.0, falloff: 0.5 }
+"""
+
+
+@dataclass
+class Case:
+    command: str
+    exits: tuple
+    stderr: tuple = ()
+    stdout: tuple = ()
+    recipe: str = None      # written to pipeline.yaml first
+    file_bytes: int = None  # the largest file that the program may write
+    note: str = ""
+
+
+def says(command, exit_code, *stderr, **more):
+    return Case(command, (exit_code,), stderr, **more)
+
+
+def prints(command, *stdout, **more):
+    return Case(command, (0,), (), stdout, **more)
+
+
+def wrong(old, new, *stderr):
+    """Baking the good recipe with `old` replaced by `new` ends with 2 and says each of `stderr`."""
+    assert old in GOOD_RECIPE, old
+    return Case("bake pipeline.yaml", (2,), stderr, recipe=GOOD_RECIPE.replace(old, new), note=repr(new))
+
+
+BAKE = [
+    prints("bake pipeline.yaml --dry-run", "out/ball.vdb", recipe=GOOD_RECIPE),
+    prints("bake --help", "--threads", "--force", "--report"),
+    prints("bake nodes", "perlin", "sphere", "height_profile"),
+    prints("bake nodes sphere", "radius", "world units"),
+    prints("bake info good.vdb", "density", "fog volume"),
+    # recipes
+    says("bake nowhere.yaml", 2, "nowhere.yaml: error: no such file"),
+    wrong("sphere:", "sphere: [", "pipeline.yaml:", "error: not valid YAML"),
+    wrong("sphere:", "sphre:", "pipeline.yaml:6:7: error: unknown field 'sphre'; did you mean 'sphere'?"),
+    wrong("voxel_size", "voxel_sise", "pipeline.yaml:4:5: error: unknown key 'voxel_sise'", "mean 'voxel_size'?"),
+    wrong("radius: 1.0", "radis: 1.0", "pipeline.yaml:6:17: error: unknown key 'radis'", "did you mean 'radius'?"),
+    wrong("up_axis: z", "up_axis: z\nup_axis: y", "pipeline.yaml:2:1: error: key 'up_axis' is given twice"),
+    wrong("voxel_size: 0.1", "voxel_size: small", "pipeline.yaml:4:17: error: 'voxel_size'", "must be a number"),
+    wrong("voxel_size: 0.1", "voxel_size: -0.1", "pipeline.yaml:4:17: error: 'voxel_size'", "must be greater than 0"),
+    wrong("voxel_size: 0.1", "voxel_size: 0", "pipeline.yaml:4:17: error: 'voxel_size'", "must be greater than 0"),
+    wrong("voxel_size: 0.1", "voxel_size: .nan", "pipeline.yaml:4:17: error: 'voxel_size'"),
+    wrong("    voxel_size: 0.1\n", "", "error:", "voxel_size"),
+    wrong("voxel_size: 0.1", "voxel_size: 0.1\n    tolerance: 1%", "pipeline.yaml:5:5: error:", "both 'voxel_size' and"),
+    wrong("radius: 1.0", "radius: -1.0", "pipeline.yaml:6:25: error: 'radius'", "must be greater than 0"),
+    wrong("up_axis: z", "up_axis: x", "pipeline.yaml:1:10: error: 'up_axis' must be one of"),
+    wrong("radius: 1.0, falloff: 0.5", "radius: wide, fallof: 0.5", "pipeline.yaml:6:25: error: 'radius'",
+          "pipeline.yaml:6:31: error: unknown key 'fallof'"),
+    wrong("assets:", "assets: {}\nrest:", "error:"),
+    # densities that no grid can hold
+    wrong("voxel_size: 0.1", "voxel_size: 0.0000001", "pipeline.yaml:", "error:", "voxels"),
+    wrong("sphere: { radius: 1.0, falloff: 0.5 }", "constant: { value: 1 }", "pipeline.yaml:", "error:"),
+    wrong("sphere: { radius: 1.0, falloff: 0.5 }", "multiply: [ sphere, 1e6 ]", "pipeline.yaml:", "error:", "65504"),
+    # command lines
+    says("bake --no-such-option", 2, "--no-such-option"),
+    says("bake pipeline.yaml --threads many", 2, "--threads", recipe=GOOD_RECIPE),
+    says("bake pipeline.yaml --threads -1", 2, "--threads"),
+    says("bake pipeline.yaml --only bell", 2, "bell", "did you mean 'ball'?"),
+    says("bake pipeline.yaml --frames 3-1", 2, "--frames must read A-B"),
+    says("bake pipeline.yaml --shard 3/2", 2, "--shard must read I/N"),
+    says("bake diff good.vdb good.vdb", 2, "not built yet"),
+    says("bake nodes sphre", 2, "sphre", "did you mean 'sphere'?"),
+    # files that cannot be written
+    says("bake pipeline.yaml --out a_file", 1, "a_file"),
+    says("bake pipeline.yaml --out a_file/below", 1, "a_file"),
+    says("bake pipeline.yaml", 1, "ball.vdb", file_bytes=4096, note="on a full disk"),
+    # files that cannot be read
+    says("bake info nowhere.vdb", 2, "nowhere.vdb: error: no such file"),
+    says("bake info text.vdb", 2, "text.vdb: error:"),
+    says("bake info empty.vdb", 2, "empty.vdb: error:"),
+    says("bake info folder.vdb", 2, "folder.vdb: error:"),
+    says("bake info cut_in_header.vdb", 2, "cut_in_header.vdb: error:"),
+    says("bake info cut_in_data.vdb", 2, "cut_in_data.vdb: error:"),
+    says("bake info cut_by_one.vdb", 2, "cut_by_one.vdb: error:"),
+    Case("bake info flipped.vdb", (0, 1, 2), note="no crash, no hang"),
+    prints("bake info vel_only.vdb", "vel"),
+]
+
+
+def render(file, *stderr, exit_code=2, options="--size 16x9", **more):
+    return says(f"preview {file} --render picture.exr {options}".strip(), exit_code, *stderr, **more)
+
+
+PREVIEW = [
+    prints("preview --help", "--render", "--size", "--scene"),
+    render("good.vdb", exit_code=0),
+    render("level_set.vdb", "level_set.vdb: error: holds no float grid that is a fog volume"),
+    render("level_set.vdb", "level_set.vdb: error: grid 'surface' is a level set", options="--grid surface"),
+    render("vel_only.vdb", "vel_only.vdb: error: holds no float grid"),
+    render("not_finite.vdb", "not_finite.vdb: error: grid 'density' holds a value that is not finite"),
+    render("nowhere.vdb", "nowhere.vdb: error: no such file"),
+    render("text.vdb", "text.vdb: error:"),
+    render("empty.vdb", "empty.vdb: error:"),
+    render("cut_in_header.vdb", "cut_in_header.vdb: error:"),
+    render("cut_in_data.vdb", "cut_in_data.vdb: error:"),
+    render("cut_by_one.vdb", "cut_by_one.vdb: error:"),
+    Case("preview flipped.vdb --render picture.exr --size 16x9", (0, 1, 2), note="no crash, no hang"),
+    render("good.vdb", "good.vdb: error: holds no grid 'temperature'", options="--grid temperature"),
+    render("good.vdb", "--no-such-option", options="--no-such-option"),
+    render("good.vdb", "unknown method 'mrach'; did you mean 'march'?", options="--method mrach"),
+    render("good.vdb", "the method 'dda' is not built yet", options="--method dda"),
+    render("good.vdb", "nowhere.yaml: error: no such file", options="--scene nowhere.yaml"),
+    render("good.vdb", "--size", options="--size 0x9"),
+    says("preview good.vdb --render picture.gif", 2, "'picture.gif' should end in .exr or .png"),
+    says("preview good.vdb --frames 1-2", 2, "--frames needs --render"),
+    says("preview chart good.vdb", 2, "not built yet"),
+    says("preview compare nowhere.exr nowhere.exr", 2, "nowhere.exr: error: no such file"),
+    says("preview compare text.vdb text.vdb", 2, "text.vdb: error:"),
+    says("preview good.vdb --render a_file/picture.exr --size 16x9", 1, "a_file"),
+    says("preview", 2),
+]
+
+TABLES = {"bake": BAKE, "preview": PREVIEW}
