@@ -167,6 +167,7 @@ MarchSettings readMarch(const yaml::Node& node, Diagnostics& out) {
   MarchSettings march;
   march.stepVoxels = reader.number("step", march.stepVoxels, kStepVoxels);
   march.shadowStepVoxels = reader.number("shadow_step", march.shadowStepVoxels, kStepVoxels);
+  march.shadowGrowth = reader.number("shadow_growth", march.shadowGrowth, {1.0, 2.0, false, false});
   reader.finish();
   return march;
 }
@@ -274,8 +275,9 @@ std::string writeScene(const Scene& scene) {
   text += "# Behind window and PNG only, linear Rec.709: no light.\nbackground: { bottom: " +
           listOf(scene.backdrop.bottom) + ", top: " + listOf(scene.backdrop.top) + " }\n";
   text += "look: " + nameOf(scene.look) + "\n";
-  text += "# Steps in voxels.\nmarch: { step: " + shortest(scene.march.stepVoxels) +
-          ", shadow_step: " + shortest(scene.march.shadowStepVoxels) + " }\n";
+  text += "# Steps in voxels; each step towards a light is shadow_growth times the one before.\nmarch: { step: " + shortest(scene.march.stepVoxels) +
+          ", shadow_step: " + shortest(scene.march.shadowStepVoxels) +
+          ", shadow_growth: " + shortest(scene.march.shadowGrowth) + " }\n";
   return text;
 }
 

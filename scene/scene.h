@@ -67,7 +67,8 @@ enum class Look { physical, report };
 /// Steps in voxels of the level being read.
 struct MarchSettings {
   double stepVoxels = 0.5;
-  double shadowStepVoxels = 1.0;
+  double shadowStepVoxels = 1.0;  // the first step towards a light
+  double shadowGrowth = 1.15;     // of each such step over the one before, from 1 (none) to 2
 };
 
 /// Keys that a scene left out are nullopt where the program chooses instead (camera: frame the active box; medium:

@@ -84,6 +84,7 @@ bool marchWidgets(MarchSettings& march) {
   constexpr float kShortest = 0.05f, kLongest = 16.0f;
   bool changed = slider("step", march.stepVoxels, kShortest, kLongest, "%.2f voxels", kLogarithmic);
   changed |= slider("shadow step", march.shadowStepVoxels, kShortest, kLongest, "%.2f voxels", kLogarithmic);
+  changed |= slider("shadow growth", march.shadowGrowth, 1.0f, 2.0f, "%.2f", 0);
   return changed;
 }
 

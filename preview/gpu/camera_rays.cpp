@@ -116,7 +116,8 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   const dvec3 sigmaS = vectorOf(view.medium.sigmaS);
   p.sigmaT = row(sigmaS + vectorOf(view.medium.sigmaA), view.medium.g);
   p.sigmaS = row(sigmaS, scene.march.stepVoxels);
-  p.octaves = row(dvec3(scene.octaves.a, scene.octaves.b, scene.octaves.c), scene.march.shadowStepVoxels);
+  p.octaves = row(dvec3(scene.octaves.a, scene.octaves.b, scene.octaves.c), 0.0);
+  p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, 0.0), 0.0);
   p.environment = row(vectorOf(scene.environment.constant), double{kSmallestTransmittance});
   p.counts.y = scene.octaves.count;
   p.counts.w = randomStart ? 1 : 0;

@@ -17,11 +17,11 @@ namespace nephele::shared {
 // std140 puts every member on a multiple of 16 bytes; so must the C++ compiler, since the struct goes up by
 // memcpy.
 inline constexpr size_t kRowBytes = 16;
-inline constexpr size_t kRowsBeforeLights = 23;
+inline constexpr size_t kRowsBeforeLights = 24;
 inline constexpr size_t kRowsPerLight = 3;
 static_assert(sizeof(vec4) == kRowBytes && sizeof(ivec4) == kRowBytes);
 static_assert(sizeof(LightParameters) == kRowsPerLight * kRowBytes);
-static_assert(offsetof(MarchParameters, counts) == 21 * kRowBytes);
+static_assert(offsetof(MarchParameters, counts) == 22 * kRowBytes);
 static_assert(offsetof(MarchParameters, lights) == kRowsBeforeLights * kRowBytes);
 static_assert(sizeof(MarchParameters) == (kRowsBeforeLights + kRowsPerLight * kMaxLights) * kRowBytes);
 

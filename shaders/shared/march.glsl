@@ -18,11 +18,11 @@ struct MarchResult {
   float samples;       // densities read: view, shadow and sky
 };
 
-// Density at an index-space position; `steps` becomes the number of steps of `stride` (index units for a step) that may be
-// taken at once: 1, or more where all samples passed over lie in the same empty brick, so that skipping changes nothing.
-NPH_FN float densityAndSkip(vec3 position, vec3 stride, NPH_OUT(int) steps) {
+// Density at an index-space position. Where its brick is empty, `toExit` becomes the number of `stride`s from there to the
+// brick's far face, over which all densities are 0; otherwise it is 0.
+NPH_FN float densityAndExit(vec3 position, vec3 stride, NPH_OUT(float) toExit) {
   ivec3 brick = ivec3(floor(position / kBrickEdge));
-  steps = 1;
+  toExit = 0.0f;
   bool outside = brick.x < 0 || brick.y < 0 || brick.z < 0 || brick.x >= params.brickCount.x ||
                  brick.y >= params.brickCount.y || brick.z >= params.brickCount.z;
   // Rounding may place an end of the ray a hair outside the box, where the density is 0.
@@ -30,38 +30,44 @@ NPH_FN float densityAndSkip(vec3 position, vec3 stride, NPH_OUT(int) steps) {
   uint slot = brickSlot(brick);
   vec3 corner = vec3(brick) * kBrickEdge;
   if (slot != 0u) return brickDensity(slot, position - corner);
-  float toExit = 1e9f;
+  toExit = 1e9f;
   for (int axis = 0; axis < 3; ++axis) {
     if (abs(stride[axis]) > 1e-9f) {
       float face = stride[axis] > 0.0f ? corner[axis] + kBrickEdge : corner[axis];
       toExit = min(toExit, (face - position[axis]) / stride[axis]);
     }
   }
-  // Stop a thousandth of a step short: an extra sample in the empty brick costs little, a missed one would be wrong.
-  steps = max(1, int(min(floor(toExit - 1e-3f), 1e6f)));
   return 0.0f;
 }
 
-// ∫ ρ ds in world units from `origin` along `direction` (index units per world unit) over at most `reach` world units.
-// Gives up, with what it has, once it exceeds `enough`.
+// ∫ ρ ds in world units from `origin` along `direction` (index units per world unit) over at most `reach` world units, by
+// steps that grow with the way gone: what lies far from a point shades its neighbours alike. Empty bricks are passed without
+// reading them, on the same steps. Gives up, with what it has, once it exceeds `enough`.
 NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enough, float start,
                            NPH_INOUT(float) samples) {
   float tNear = 0.0f;
   float tFar = 0.0f;
   if (!intersectBox(origin, direction, vec3(params.boxMin), vec3(params.boxMax), tNear, tFar)) return 0.0f;
   tFar = min(tFar, reach);
-  float dt = params.octaves.w / length(direction);
-  vec3 stride = direction * dt;
+  float dt = params.shadow.x / length(direction);
+  float growth = params.shadow.y;
   float column = 0.0f;
-  int steps = 1;
-  // An int counts steps: a float would stop counting at 2^24.
-  for (int k = 0;; k += steps) {
-    float t = tNear + float(k) * dt;
-    if (!(t < tFar)) break;        // also where t is NaN
+  float t = tNear;
+  while (t < tFar) {               // false also where t is NaN
     float ds = min(dt, tFar - t);  // the last step ends where the medium does
-    column += densityAndSkip(origin + (t + start * ds) * direction, stride, steps) * ds;
+    float middle = t + start * ds;
+    float toExit = 0.0f;
+    column += densityAndExit(origin + middle * direction, direction, toExit) * ds;
     samples += 1.0f;
     if (column > enough) break;
+    t += ds;
+    dt *= growth;
+    // Steps whose reading lies in the same empty brick, a thousandth of a step before its end at most.
+    float end = min(middle + toExit, tFar) - 1e-3f * dt;
+    while (t + start * dt < end) {
+      t += dt;
+      dt *= growth;
+    }
   }
   return column;
 }
@@ -188,7 +194,10 @@ NPH_FN MarchResult marchRay(vec2 at, uint random, uint number) {
     if (!last) {
       float ds = min(dt, tFar - t);
       float middle = t + start * ds;
-      float rho = densityAndSkip(origin + middle * direction, stride, steps);
+      float toExit = 0.0f;
+      float rho = densityAndExit(origin + middle * direction, stride, toExit);
+      // Stop a thousandth of a step short: an extra sample in the empty brick costs little, a missed one would be wrong.
+      steps = max(1, int(min(floor(toExit - 1e-3f), 1e6f)));
       result.samples += 1.0f;
       if (rho > 0.0f) {
         vec3 x = (rho * ds) * vec3(params.sigmaT);

@@ -33,7 +33,8 @@ struct MarchParameters {
   vec4 boxMax;
   vec4 sigmaT;       // per unit density per world unit. w: g
   vec4 sigmaS;       // w: step, voxels
-  vec4 octaves;      // a, b, c. w: shadow step, voxels
+  vec4 octaves;      // a, b, c
+  vec4 shadow;       // x: first step towards a light, voxels. y: growth from each step to the next, at least 1
   vec4 environment;  // uniform radiance. w: smallest transmittance worth following
   ivec4 counts;      // x: lights. y: octaves beyond the first. w: 1 where steps start at random, 0 midway
   ivec4 brickCount;  // bricks along each axis. w: seed

@@ -61,7 +61,7 @@ TEST(SharedMarch, SingleScatteringBackLitSlabHasItsClosedForm) {
   p.lights[0] = {vec4(1.0f, 0.0f, 0.0f, float(kLightSun)), vec4(1.0f, 0.0f, 0.0f, 0.0f),
                  vec4(2.0f, 3.0f, 4.0f, 0.0f)};
   p.sigmaS.w = 0.05f;
-  p.octaves.w = 0.05f;
+  p.shadow = vec4(0.05f, 1.0f, 0.0f, 0.0f);
   March<FullBricks> march{p, &bricks};
   const auto result = march.marchRay(vec2(0.0f), 1u, 0u);
   const double depth = 0.03 * 64.0;
