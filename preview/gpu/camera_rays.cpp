@@ -1,6 +1,8 @@
 // Rays, lights and medium for the march. Depends on scene, volume/bricks.h and shaders/shared.
 #include "preview/gpu/camera_rays.h"
 
+#include "base/error.h"
+
 #include <cmath>
 #include <glm/matrix.hpp>
 #include <limits>
@@ -117,6 +119,8 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   p.sigmaT = row(sigmaS + vectorOf(view.medium.sigmaA), view.medium.g);
   p.sigmaS = row(sigmaS, scene.march.stepVoxels);
   p.octaves = row(dvec3(scene.octaves.a, scene.octaves.b, scene.octaves.c), 0.0);
+  NEPHELE_CHECK_GT(scene.march.shadowStepVoxels, 0.0);
+  NEPHELE_CHECK_LE(1.0, scene.march.shadowGrowth);  // less would never arrive
   p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, 0.0), 0.0);
   p.environment = row(vectorOf(scene.environment.constant), double{kSmallestTransmittance});
   p.counts.y = scene.octaves.count;

@@ -28,7 +28,8 @@ MarchParameters parametersFor(float left, float right, float sigmaT) {
   p.boxMax = vec4(right, 208.0f, 208.0f, 0.0f);
   p.sigmaT = vec4(vec3(sigmaT), 0.0f);
   p.sigmaS = vec4(vec3(sigmaT), 0.5f);
-  p.octaves = vec4(0.5f, 0.5f, 0.5f, 1.0f);
+  p.octaves = vec4(0.5f, 0.5f, 0.5f, 0.0f);
+  p.shadow = vec4(1.0f, 1.0f, 0.0f, 0.0f);
   p.environment = vec4(0.0f, 0.0f, 0.0f, 1e-6f);
   p.brickCount = ivec4(26, 26, 26, 0);
   return p;
