@@ -2,6 +2,10 @@
 #include "bake/field_specs.h"
 
 #include <algorithm>
+#include <filesystem>
+
+#include "base/files.h"
+#include "base/hash.h"
 
 namespace nephele {
 namespace {
@@ -28,9 +32,25 @@ std::optional<Curve> readCurve(const yaml::Node& node, const std::string& what, 
   return curve;
 }
 
+/// Reads a file's name, relative to `folder`, and hashes what the file holds.
+std::optional<InputFile> readFile(const yaml::Node& node, const std::string& what, const std::string& folder,
+                                  Diagnostics& out) {
+  const auto name = yaml::readText(node, what, out);
+  if (!name) return std::nullopt;
+  const std::string path = (std::filesystem::path(folder) / *name).string();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    out.add(node.where, what + " names no file: " + inQuotes(path));
+    return std::nullopt;
+  }
+  Hasher hasher;
+  hasher.text(readWhole(path));
+  return InputFile{path, hasher.hex()};
+}
+
 /// Reads the types that hold no fields.
 std::optional<Value> readPlain(const Parameter& parameter, const std::string& what, const yaml::Node& node,
-                               Diagnostics& out) {
+                               const std::string& folder, Diagnostics& out) {
   switch (parameter.type) {
     case ParameterType::number:
       if (const auto v = yaml::readNumber(node, what, parameter.range, out)) return Value{*v};
@@ -48,6 +68,9 @@ std::optional<Value> readPlain(const Parameter& parameter, const std::string& wh
       return std::nullopt;
     case ParameterType::curve:
       if (auto v = readCurve(node, what, parameter.range, out)) return Value{std::move(*v)};
+      return std::nullopt;
+    case ParameterType::file:
+      if (auto v = readFile(node, what, folder, out)) return Value{std::move(*v)};
       return std::nullopt;
     case ParameterType::choice: {
       const auto v = yaml::readText(node, what, out);
@@ -159,6 +182,8 @@ FieldSpecPtr FieldReader::readRow(const FieldRow& row, const yaml::Node& body, c
   const std::string rowName = inQuotes(row.name);
   if (body.kind == yaml::Kind::sequence && listParameter(row)) {
     good = readFields(*listParameter(row), rowName, body, *spec);
+    for (const Parameter& parameter : row.parameters)
+      if (parameter.fallback) spec->values.emplace(parameter.name, *parameter.fallback);
   } else if (body.kind == yaml::Kind::map || body.kind == yaml::Kind::null) {
     yaml::MapReader reader(body, rowName, out_);
     for (const Parameter& parameter : row.parameters) {
@@ -184,7 +209,13 @@ FieldSpecPtr FieldReader::readRow(const FieldRow& row, const yaml::Node& body, c
 
 bool FieldReader::validate(const FieldRow& row, const FieldSpec& spec, const yaml::Node& body) {
   if (!row.validate) return true;
-  const auto complaint = row.validate(Arguments(spec.values));
+  Complaint complaint;
+  try {
+    complaint = row.validate(Arguments(spec.values));
+  } catch (const InputError& error) {  // in a file that the recipe names
+    for (const Diagnostic& d : error.diagnostics()) out_.add(d.where, d.sentence, d.hint);
+    return false;
+  }
   if (!complaint) return true;
   yaml::MapReader places(body, std::string(row.name), out_);
   const SourceLocation place = places.where(complaint->first);
@@ -201,7 +232,7 @@ bool FieldReader::readParameter(const Parameter& parameter, const std::string& w
     spec.children[std::string(parameter.name)] = {std::move(child)};
     return true;
   }
-  const auto value = readPlain(parameter, what, *node, out_);
+  const auto value = readPlain(parameter, what, *node, folder_, out_);
   if (!value) return false;
   spec.values.emplace(parameter.name, *value);
   return true;

@@ -15,7 +15,8 @@ namespace nephele {
 /// of a row that needs no parameters. Nodes that aliases share are read once.
 class FieldReader {
  public:
-  explicit FieldReader(Diagnostics& out) : out_(out) {}
+  /// Files that the recipe names lie relative to `folder`.
+  FieldReader(Diagnostics& out, std::string folder) : out_(out), folder_(std::move(folder)) {}
 
   /// Takes the map of named fields; reads none of them yet.
   void setNamed(const yaml::Node& fields);
@@ -37,6 +38,7 @@ class FieldReader {
   std::vector<std::string_view> knownNames() const;
 
   Diagnostics& out_;
+  std::string folder_;
   std::map<std::string, yaml::NodePtr> named_;
   std::map<std::string, FieldSpecPtr> readNames_;
   std::vector<std::string> path_;  // named fields being read, outermost first

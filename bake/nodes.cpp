@@ -24,6 +24,8 @@ std::string_view nameOf(ParameterType type) {
       return "[x, y, z]";
     case ParameterType::curve:
       return "[[x, y], ...]";
+    case ParameterType::file:
+      return "file";
     case ParameterType::field:
       return "field";
     case ParameterType::fields:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
 #include "bake/field_specs.h"
 #include "base/hash.h"
@@ -119,6 +120,7 @@ class SpecHasher {
     out.value(v.size());
     for (const auto& point : v) feed(out, point);
   }
+  static void feed(Hasher& out, const InputFile& v) { out.text(v.contentHash); }
   // Built fields stand in arguments, never in specs.
   static void feed(Hasher&, const FieldPtr&) {}
   static void feed(Hasher&, const std::vector<FieldPtr>&) {}
@@ -139,7 +141,7 @@ Pipeline loadPipeline(const std::string& path) {
   pipeline.upAxis = reader.choice("up_axis", "z", {"y", "z"}).front();
   pipeline.seed = reader.integer("seed", 0, {-2147483648.0, 4294967295.0, false, false});
   if (const yaml::NodePtr scene = reader.find("scene")) pipeline.scene = readScene(*scene, out);
-  FieldReader fields(out);
+  FieldReader fields(out, std::filesystem::path(path).parent_path().string());
   if (const yaml::NodePtr named = reader.find("fields")) fields.setNamed(*named);
   const yaml::NodePtr assets = reader.find("assets");
   if (!assets || assets->kind != yaml::Kind::map || assets->entries.empty())
@@ -168,7 +170,7 @@ FieldPtr buildField(const FieldSpec& spec, const BuildContext& context) {
   return FieldBuilder(context).build(spec);
 }
 
-std::string recipeHash(const Pipeline& pipeline, const Asset& asset) {
+std::string recipeHash(const Pipeline& pipeline, const Asset& asset, double time) {
   Hasher hasher;
   hasher.text(programVersion());
   hasher.value(pipeline.upAxis);
@@ -176,6 +178,7 @@ std::string recipeHash(const Pipeline& pipeline, const Asset& asset) {
   hasher.value(asset.voxelSize);
   hasher.value(int(asset.precision));
   hasher.value(asset.cutoff);
+  hasher.value(time);
   const bool medium = pipeline.scene && pipeline.scene->medium;
   hasher.value(int(medium));
   if (medium) {

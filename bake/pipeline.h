@@ -63,8 +63,8 @@ std::optional<FrameRange> parseFrames(const std::string& text);
 FieldPtr buildField(const FieldSpec& spec, const BuildContext& context);
 
 /// 32 hex digits of everything that the asset's content depends on: its fields with all parameters, voxel
-/// size, cutoff, precision, up axis, seed, medium, and the program's version. Equal recipes written
-/// differently give equal hashes.
-std::string recipeHash(const Pipeline& pipeline, const Asset& asset);
+/// size, contents of the files they name, cutoff, precision, up axis, seed, medium, `time` in seconds,
+/// and the program's version. Equal recipes written differently give equal hashes.
+std::string recipeHash(const Pipeline& pipeline, const Asset& asset, double time = 0.0);
 
 }  // namespace nephele

@@ -89,6 +89,7 @@ BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::stri
   context.upAxis = pipeline.upAxis == 'y' ? 1 : 2;
   context.seed = uint32_t(pipeline.seed);
   context.notes = &record.bandLimit;
+  context.time = job.time();
   auto start = std::chrono::steady_clock::now();
   const FieldPtr field = buildField(*job.asset->density, context);
   const Voxelized voxelized = fill(*field, *job.asset, fs::path(job.file).filename().string(), quiet);
@@ -180,7 +181,7 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
   removeLeftovers(options.outFolder);
   std::vector<BakeRecord> records;
   for (const BakeJob& job : jobs) {
-    const std::string hash = recipeHash(pipeline, *job.asset);
+    const std::string hash = recipeHash(pipeline, *job.asset, job.time());
     BakeRecord record;
     if (!options.force && isUpToDate(job, hash))
       record.skipped = true;

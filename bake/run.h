@@ -30,6 +30,9 @@ struct BakeJob {
   const Asset* asset = nullptr;
   std::optional<int> frame;
   std::string file;  // outFolder/NAME.vdb or outFolder/NAME_0001.vdb
+
+  /// Seconds since frame 0; 0 for an asset without frames.
+  double time() const { return frame ? *frame / asset->fps : 0.0; }
 };
 
 /// What one file cost and holds. Files that were up to date have only the first five and `skipped`.

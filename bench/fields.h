@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bake/fields/table.h"
+#include "bench/sample_files.h"
 
 namespace nephele::bench {
 
@@ -15,6 +16,8 @@ inline FieldPtr fieldForBench(const std::string& name, double voxelSize) {
   for (const Parameter& parameter : row->parameters) {
     if (parameter.fallback)
       values.emplace(parameter.name, *parameter.fallback);
+    else if (parameter.type == ParameterType::file)
+      values.emplace(parameter.name, InputFile{sampleFile(name), {}});
     else if (parameter.type == ParameterType::field)
       values.emplace(parameter.name, fieldForBench("fbm", voxelSize));
     else if (parameter.type == ParameterType::fields)

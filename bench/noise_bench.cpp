@@ -39,7 +39,7 @@ void overLattice(benchmark::State& state, const Evaluate& evaluate) {
 }
 
 std::vector<NoiseOctave> octaves(int64_t count) {
-  return fbmOctaves(kFeature, count, 2.0, 0.5, 0, 1u, {1.0, 2, 0, nullptr}, "bench");
+  return fbmOctaves({kFeature, count, 2.0, 0.5, 0, 1u, {}, {}}, {1.0, 2, 0, nullptr}, "bench");
 }
 
 void perlinLattice(benchmark::State& state) {
@@ -77,6 +77,8 @@ void perlinDefinition(benchmark::State& state) {
 }
 BENCHMARK(perlinDefinition)->Arg(1)->Arg(5)->ArgName("octaves");
 
+}  // namespace
+
 /// Every row of the table at its defaults, cells of 50 voxels.
 void field(benchmark::State& state, const std::string& name) {
   const FieldPtr built = fieldForBench(name, 1.0 / kFeature);
@@ -85,13 +87,16 @@ void field(benchmark::State& state, const std::string& name) {
   });
 }
 
-const bool kRegistered = [] {
-  for (const FieldRow& row : fieldTable())
+}  // namespace nephele::bench
+
+int main(int argc, char** argv) {
+  // Here, not during static initialisation: the table's own constants must stand first.
+  for (const nephele::FieldRow& row : nephele::fieldTable())
     benchmark::RegisterBenchmark(
         ("field/" + std::string(row.name)).c_str(),
-        [name = std::string(row.name)](benchmark::State& state) { field(state, name); });
-  return true;
-}();
-
-}  // namespace
-}  // namespace nephele::bench
+        [name = std::string(row.name)](benchmark::State& state) { nephele::bench::field(state, name); });
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -30,9 +30,9 @@ CellPlace moved(const CellPlace& start, float by) {
 }
 
 void valueNoiseAtPoints(const NoiseOctave& octave, const Points& points, float* values) {
-  const CellPlace x = cellPlace(points.origin.x, octave.cellSize),
-                  y = cellPlace(points.origin.y, octave.cellSize),
-                  z = cellPlace(points.origin.z, octave.cellSize);
+  const glm::dvec3 origin = points.origin - octave.offset;
+  const CellPlace x = cellPlace(origin.x, octave.cellSize), y = cellPlace(origin.y, octave.cellSize),
+                  z = cellPlace(origin.z, octave.cellSize);
   const float frequency = float(1.0 / octave.cellSize);
   for (size_t n = 0; n < points.count; ++n)
     values[n] = valueNoiseAt(octave, moved(x, points.x[n] * frequency), moved(y, points.y[n] * frequency),
@@ -58,7 +58,9 @@ double meanOf(Basis basis, Fold fold) {
 void evaluateBasis(Basis basis, const NoiseOctave& octave, const Points& points, float* values) {
   if (basis == Basis::value) return valueNoiseAtPoints(octave, points, values);
   if (basis == Basis::worley) {
-    worleyAtPoints(worleyOf(octave), points, values);
+    Points moved = points;
+    moved.origin -= octave.offset;
+    worleyAtPoints(worleyOf(octave), moved, values);
     return fromDistance(values, points.count);
   }
   NoiseOctave whole = octave;
@@ -70,7 +72,7 @@ void evaluateBasis(Basis basis, const NoiseOctave& octave, const Points& points,
 void evaluateBasis(Basis basis, const NoiseOctave& octave, const Lattice& lattice, float* values) {
   if (basis == Basis::value) return valueNoiseAtPoints(octave, LatticePoints(lattice).points(), values);
   if (basis == Basis::worley) {
-    worleyOnLattice(worleyOf(octave), lattice, values);
+    worleyOnLattice(worleyOf(octave), {lattice.origin - octave.offset, lattice.spacing}, values);
     return fromDistance(values, kBlockPoints);
   }
   NoiseOctave whole = octave;
@@ -93,7 +95,7 @@ Interval boundBasis(Basis basis, const NoiseOctave& octave, const Box& box) {
   const double slope = basis == Basis::worley ? 2.0 : kValueSlope;
   // A distance to the nearest of points changes by at most the way gone; the basis takes twice that.
   if (!(slope * across < 2.0)) return all;
-  const glm::dvec3 p = box.centre();
+  const glm::dvec3 p = box.centre() - octave.offset;
   const double centre =
       basis == Basis::worley
           ? 1.0 - 2.0 * double(worleyAt(worleyOf(octave), p))

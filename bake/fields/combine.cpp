@@ -2,14 +2,12 @@
 // and shared text.
 #include <algorithm>
 
+#include "bake/fields/fold.h"
 #include "bake/fields/rows.h"
 #include "bake/fields/shared_text.h"
 
 namespace nephele {
 namespace {
-
-size_t countOf(const Points& points) { return points.count; }
-size_t countOf(const Lattice&) { return size_t(kBlockPoints); }
 
 class Constant final : public Field {
  public:
@@ -25,78 +23,30 @@ class Constant final : public Field {
   float value_;
 };
 
-/// A fold over a list. Fold gives: apply(sum, value), join(Interval, Interval), hold(Box, Box), and whether a
-/// block whose values are all 0 stays so whatever follows.
-template <class Fold>
-class FoldField final : public Field {
- public:
-  explicit FoldField(std::vector<FieldPtr> inputs) : inputs_(std::move(inputs)) {}
-
-  void evaluate(const Points& points, float* values) const override { fold(points, values); }
-  void evaluate(const Lattice& lattice, float* values) const override { fold(lattice, values); }
-
-  Interval bounds(const Box& box) const override {
-    Interval sum = inputs_.front()->bounds(box);
-    for (size_t i = 1; i < inputs_.size(); ++i) {
-      if (Fold::kZeroStays && sum.low == 0.0 && sum.high == 0.0) break;
-      sum = Fold::join(sum, inputs_[i]->bounds(box));
-    }
-    return sum;
-  }
-
-  Box support() const override {
-    Box box = inputs_.front()->support();
-    for (size_t i = 1; i < inputs_.size(); ++i) box = Fold::hold(box, inputs_[i]->support());
-    return box;
-  }
-
- private:
-  template <class Where>
-  void fold(const Where& where, float* values) const {
-    const size_t count = countOf(where);
-    inputs_.front()->evaluate(where, values);
-    for (size_t i = 1; i < inputs_.size(); ++i) {
-      if (Fold::kZeroStays && std::all_of(values, values + count, [](float v) { return v == 0.0f; })) return;
-      float next[kBlockPoints];
-      inputs_[i]->evaluate(where, next);
-      for (size_t n = 0; n < count; ++n) values[n] = Fold::apply(values[n], next[n]);
-    }
-  }
-
-  std::vector<FieldPtr> inputs_;
-};
-
-struct Add {
+struct Add : Fold {
   static constexpr bool kZeroStays = false;
   static float apply(float a, float b) { return a + b; }
   static Interval join(const Interval& a, const Interval& b) { return a + b; }
   static Box hold(const Box& a, const Box& b) { return hull(a, b); }
 };
-struct Multiply {
+struct Multiply : Fold {
   static constexpr bool kZeroStays = true;
   static float apply(float a, float b) { return a * b; }
   static Interval join(const Interval& a, const Interval& b) { return a * b; }
   static Box hold(const Box& a, const Box& b) { return intersection(a, b); }
 };
-struct Min {
+struct Min : Fold {
   static constexpr bool kZeroStays = false;
   static float apply(float a, float b) { return std::min(a, b); }
   static Interval join(const Interval& a, const Interval& b) { return minimum(a, b); }
   static Box hold(const Box& a, const Box& b) { return hull(a, b); }
 };
-struct Max {
+struct Max : Fold {
   static constexpr bool kZeroStays = false;
   static float apply(float a, float b) { return std::max(a, b); }
   static Interval join(const Interval& a, const Interval& b) { return maximum(a, b); }
   static Box hold(const Box& a, const Box& b) { return hull(a, b); }
 };
-
-template <class Fold>
-FieldPtr buildFold(const Arguments& a, const BuildContext&) {
-  return std::make_shared<FoldField<Fold>>(a.fields("inputs"));
-}
-
-const Parameter kInputs{"inputs", ParameterType::fields, "One field or more, in order.", std::nullopt};
 
 /// a + (b − a) · t.
 class Mix final : public Field {

@@ -221,9 +221,9 @@ HWY_INLINE void addGroup(const NoiseOctave& octave, const BlockAxis& ax, const B
 void addOnLattice(const NoiseOctave& octave, const Lattice& lattice, float* sums) {
   BlockAxis ax, ay, az;
   const float step = float(lattice.spacing / octave.cellSize);
-  setAxis(lattice.origin.x, octave.cellSize, step, ax);
-  setAxis(lattice.origin.y, octave.cellSize, step, ay);
-  setAxis(lattice.origin.z, octave.cellSize, step, az);
+  setAxis(lattice.origin.x - octave.offset.x, octave.cellSize, step, ax);
+  setAxis(lattice.origin.y - octave.offset.y, octave.cellSize, step, ay);
+  setAxis(lattice.origin.z - octave.offset.z, octave.cellSize, step, az);
   for (size_t group = 0; group < kGroups; ++group) addGroup(octave, ax, ay, az, group, sums);
 }
 
@@ -297,9 +297,9 @@ size_t addAtPoints(const NoiseOctave& octave, const Points& points, float* sums)
   const Tag d;
   const size_t lanes = hn::Lanes(d);
   const GradientTable table;
-  const CellPlace px = cellPlace(points.origin.x, octave.cellSize),
-                  py = cellPlace(points.origin.y, octave.cellSize),
-                  pz = cellPlace(points.origin.z, octave.cellSize);
+  const CellPlace px = cellPlace(points.origin.x - octave.offset.x, octave.cellSize),
+                  py = cellPlace(points.origin.y - octave.offset.y, octave.cellSize),
+                  pz = cellPlace(points.origin.z - octave.offset.z, octave.cellSize);
   const auto frequency = hn::Set(d, float(1.0 / octave.cellSize)), weight = hn::Set(d, octave.weight);
   size_t n = 0;
   for (; n + lanes <= points.count; n += lanes) {
@@ -364,9 +364,9 @@ void mixCorners(const NoiseOctave& octave, const BlockAxis& ax, int i, const Blo
 void addOnLattice(const NoiseOctave& octave, const Lattice& lattice, float* sums) {
   BlockAxis ax, ay, az;
   const float step = float(lattice.spacing / octave.cellSize);
-  setAxis(lattice.origin.x, octave.cellSize, step, ax);
-  setAxis(lattice.origin.y, octave.cellSize, step, ay);
-  setAxis(lattice.origin.z, octave.cellSize, step, az);
+  setAxis(lattice.origin.x - octave.offset.x, octave.cellSize, step, ax);
+  setAxis(lattice.origin.y - octave.offset.y, octave.cellSize, step, ay);
+  setAxis(lattice.origin.z - octave.offset.z, octave.cellSize, step, az);
   const float weight = octave.weight * shared::kPerlinScale;
   for (int i = 0; i < kBlockEdge; ++i)
     for (int j = 0; j < kBlockEdge; ++j)
@@ -397,9 +397,9 @@ namespace {
 /// Points from `first` on, by the definition: the rest of a vector, and periods, whose folding costs a
 /// division a corner.
 void addByDefinition(const NoiseOctave& octave, const Points& points, size_t first, float* sums) {
-  const CellPlace px = cellPlace(points.origin.x, octave.cellSize),
-                  py = cellPlace(points.origin.y, octave.cellSize),
-                  pz = cellPlace(points.origin.z, octave.cellSize);
+  const CellPlace px = cellPlace(points.origin.x - octave.offset.x, octave.cellSize),
+                  py = cellPlace(points.origin.y - octave.offset.y, octave.cellSize),
+                  pz = cellPlace(points.origin.z - octave.offset.z, octave.cellSize);
   const float frequency = float(1.0 / octave.cellSize);
   for (size_t n = first; n < points.count; ++n) {
     const float x = px.fraction + points.x[n] * frequency;

@@ -1,5 +1,5 @@
-// The rows of noise beyond perlin: fractal sums over any basis (fbm, ridged, billow), worley, perlin_worley,
-// value, curl. Depends on basis.h, the kernels, table.h and shared text.
+// The rows of noise: fractal sums over any basis (fbm, ridged, billow), perlin, value, worley, perlin_worley.
+// Depends on basis.h, the kernels, table.h and shared text.
 #include <algorithm>
 #include <cmath>
 
@@ -73,8 +73,10 @@ std::shared_ptr<FractalField> makeFractal(Basis basis, Fold fold, const Argument
                                           const BuildContext& context, int64_t octaves, const char* field) {
   const bool single = octaves == 1;
   const double lacunarity = single ? 2.0 : a.number("lacunarity"), gain = single ? 0.5 : a.number("gain");
-  std::vector<NoiseOctave> list = fbmOctaves(a.number("cell_size"), octaves, lacunarity, gain,
-                                             a.integer("period"), mixedSeed(a, context, 0), context, field);
+  std::vector<NoiseOctave> list = fbmOctaves(
+      {a.number("cell_size"), octaves, lacunarity, gain, a.integer("period"), mixedSeed(a, context, 0),
+       a.vector("scroll"), single ? glm::dvec3(0.0) : a.vector("fine_scroll")},
+      context, field);
   double kept = 0.0;
   for (const NoiseOctave& octave : list) kept += double(octave.weight);
   const double level = octaves == 0 ? 0.0 : std::max(0.0, 1.0 - kept) * meanOf(basis, fold);
@@ -101,7 +103,7 @@ FieldRow fractalRow(std::string_view name, std::string_view sentence) {
   static constexpr const char* kNames[] = {"fbm", "ridged", "billow"};
   return {name,
           sentence,
-          {kBasis, kCellSize, kOctaves, kLacunarity, kGain, kSeed, kPeriod},
+          {kBasis, kCellSize, kOctaves, kLacunarity, kGain, kSeed, kPeriod, kScroll, kFineScroll},
           [](const Arguments& a, const BuildContext& context) -> FieldPtr {
             return makeFractal(basisOf(a.choice("basis")), kFold, a, context, a.integer("octaves"),
                                kNames[int(kFold)]);
@@ -112,12 +114,14 @@ FieldRow fractalRow(std::string_view name, std::string_view sentence) {
 /// Distances of cellular noise.
 class WorleyField final : public Field {
  public:
-  explicit WorleyField(const WorleyNoise& noise) : noise_(noise) {}
+  WorleyField(const WorleyNoise& noise, const glm::dvec3& offset) : noise_(noise), offset_(offset) {}
   void evaluate(const Points& points, float* values) const override {
-    worleyAtPoints(noise_, points, values);
+    Points moved = points;
+    moved.origin -= offset_;
+    worleyAtPoints(noise_, moved, values);
   }
   void evaluate(const Lattice& lattice, float* values) const override {
-    worleyOnLattice(noise_, lattice, values);
+    worleyOnLattice(noise_, {lattice.origin - offset_, lattice.spacing}, values);
   }
   Interval bounds(const Box& box) const override {
     // √3 bounds both distances; each changes by at most the way gone, their difference by twice that.
@@ -126,23 +130,29 @@ class WorleyField final : public Field {
     const double slope = noise_.output == WorleyOutput::f2MinusF1 ? 2.0 : 1.0;
     const double way = slope * std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z) + kPlaceRoom;
     if (!(way < kLargest)) return {0.0, kLargest};
-    const double centre = double(worleyAt(noise_, box.centre()));
+    const double centre = double(worleyAt(noise_, box.centre() - offset_));
     return clamped({centre - way, centre + way}, 0.0, kLargest);
   }
   Box support() const override { return Box{}; }
 
  private:
   WorleyNoise noise_;
+  glm::dvec3 offset_;  // world units that the pattern has moved
 };
+
+std::shared_ptr<const WorleyField> makeWorley(const Arguments& a, const BuildContext& context,
+                                              WorleyOutput output) {
+  return std::make_shared<WorleyField>(
+      WorleyNoise{a.number("cell_size"), float(a.number("jitter")), mixedSeed(a, context, 2),
+                  int(a.integer("period")), output},
+      context.time * a.vector("scroll"));
+}
 
 /// Gradient noise and cellular noise as one, in [0, 1].
 class PerlinWorley final : public Field {
  public:
-  PerlinWorley(FieldPtr perlin, const WorleyNoise& worley, bool dilate, double amount)
-      : perlin_(std::move(perlin)),
-        worley_(std::make_shared<WorleyField>(worley)),
-        dilate_(dilate),
-        amount_(float(amount)) {}
+  PerlinWorley(FieldPtr perlin, std::shared_ptr<const WorleyField> worley, bool dilate, double amount)
+      : perlin_(std::move(perlin)), worley_(std::move(worley)), dilate_(dilate), amount_(float(amount)) {}
   void evaluate(const Points& points, float* values) const override { join(points, points.count, values); }
   void evaluate(const Lattice& lattice, float* values) const override { join(lattice, kBlockPoints, values); }
   Interval bounds(const Box& box) const override {
@@ -169,7 +179,7 @@ class PerlinWorley final : public Field {
     }
   }
   FieldPtr perlin_;
-  std::shared_ptr<WorleyField> worley_;
+  std::shared_ptr<const WorleyField> worley_;
   bool dilate_;
   float amount_;
 };
@@ -182,7 +192,7 @@ const Parameter kJitter{"jitter", ParameterType::number,
 FieldRow perlinRow() {
   return {"perlin",
           "Gradient noise in [-1, 1]: 0 at the corners of its cells, smooth between.",
-          {kCellSize, kSeed, kPeriod},
+          {kCellSize, kSeed, kPeriod, kScroll},
           [](const Arguments& a, const BuildContext& context) -> FieldPtr {
             return makeFractal(Basis::perlin, Fold::plain, a, context, 1, "perlin");
           }};
@@ -191,7 +201,7 @@ FieldRow perlinRow() {
 FieldRow valueRow() {
   return {"value",
           "Value noise in [-1, 1]: a random value at each corner of its cells, smooth between.",
-          {kCellSize, kSeed, kPeriod},
+          {kCellSize, kSeed, kPeriod, kScroll},
           [](const Arguments& a, const BuildContext& context) -> FieldPtr {
             return makeFractal(Basis::value, Fold::plain, a, context, 1, "value");
           }};
@@ -227,14 +237,14 @@ FieldRow worleyRow() {
         {"f1", "f2", "f2_minus_f1"}},
        kJitter,
        kSeed,
-       kPeriod},
+       kPeriod,
+       kScroll},
       [](const Arguments& a, const BuildContext& context) -> FieldPtr {
         const std::string& output = a.choice("output");
-        return std::make_shared<WorleyField>(WorleyNoise{a.number("cell_size"), float(a.number("jitter")),
-                                                         mixedSeed(a, context, 2), int(a.integer("period")),
-                                                         output == "f1"   ? WorleyOutput::f1
-                                                         : output == "f2" ? WorleyOutput::f2
-                                                                          : WorleyOutput::f2MinusF1});
+        return makeWorley(a, context,
+                          output == "f1"   ? WorleyOutput::f1
+                          : output == "f2" ? WorleyOutput::f2
+                                           : WorleyOutput::f2MinusF1);
       }};
 }
 
@@ -256,13 +266,13 @@ FieldRow perlinWorleyRow() {
        kGain,
        kJitter,
        kSeed,
-       kPeriod},
+       kPeriod,
+       kScroll,
+       kFineScroll},
       [](const Arguments& a, const BuildContext& context) -> FieldPtr {
         return std::make_shared<PerlinWorley>(
             makeFractal(Basis::perlin, Fold::plain, a, context, a.integer("octaves"), "perlin_worley"),
-            WorleyNoise{a.number("cell_size"), float(a.number("jitter")), mixedSeed(a, context, 2),
-                        int(a.integer("period")), WorleyOutput::f1},
-            a.choice("form") == "dilate", a.number("amount"));
+            makeWorley(a, context, WorleyOutput::f1), a.choice("form") == "dilate", a.number("amount"));
       },
       validatePeriod};
 }

@@ -9,7 +9,8 @@
 namespace nephele {
 namespace {
 
-float noiseAt(const NoiseOctave& octave, const glm::dvec3& p) {
+float noiseAt(const NoiseOctave& octave, const glm::dvec3& place) {
+  const glm::dvec3 p = place - octave.offset;
   const CellPlace x = cellPlace(p.x, octave.cellSize), y = cellPlace(p.y, octave.cellSize),
                   z = cellPlace(p.z, octave.cellSize);
   return shared::perlinNoise({x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction}, octave.period,
@@ -35,25 +36,25 @@ Interval boundNoise(const NoiseOctave& octave, const Box& box) {
   return both(all, {centre - room, centre + room});
 }
 
-std::vector<NoiseOctave> fbmOctaves(double cellSize, int64_t octaves, double lacunarity, double gain,
-                                    int64_t period, uint32_t seed, const BuildContext& context,
-                                    const char* field) {
+std::vector<NoiseOctave> fbmOctaves(const Fractal& fractal, const BuildContext& context, const char* field) {
   double total = 0.0, weight = 1.0;
-  for (int64_t i = 0; i < octaves; ++i, weight *= gain) total += weight;
+  for (int64_t i = 0; i < fractal.octaves; ++i, weight *= fractal.gain) total += weight;
   std::vector<NoiseOctave> list;
   weight = 1.0;
-  double size = cellSize;
-  double cells = double(period);
-  for (int64_t i = 0; i < octaves; ++i) {
+  double size = fractal.cellSize;
+  double cells = double(fractal.period);
+  for (int64_t i = 0; i < fractal.octaves; ++i) {
     const double kept = bandLimit(size / context.voxelSize);
     if (kept < 1.0 && context.notes)
       context.notes->push_back({field, int(i), size / context.voxelSize, kept});
+    const double fineness = fractal.octaves > 1 ? double(i) / double(fractal.octaves - 1) : 0.0;
     if (kept > 0.0)
-      list.push_back(
-          {size, float(weight * kept / total), shared::seedApart(seed, int(i)), int(std::lround(cells))});
-    weight *= gain;
-    size /= lacunarity;
-    cells *= lacunarity;
+      list.push_back({size, float(weight * kept / total), shared::seedApart(fractal.seed, int(i)),
+                      int(std::lround(cells)),
+                      context.time * (fractal.scroll + fineness * fractal.fineScroll)});
+    weight *= fractal.gain;
+    size /= fractal.lacunarity;
+    cells *= fractal.lacunarity;
   }
   return list;
 }

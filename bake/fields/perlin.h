@@ -15,7 +15,8 @@ struct NoiseOctave {
   double cellSize = 1.0;
   float weight = 1.0f;
   uint32_t seed = 0;
-  int period = 0;  // cells; 0: none
+  int period = 0;          // cells; 0: none
+  glm::dvec3 offset{0.0};  // world units that the pattern has moved
 };
 
 /// Weight of a noise whose cells measure `cellVoxels` voxels: 1 from 4 voxels on, 0 below 2, linear between.
@@ -33,10 +34,20 @@ inline constexpr double kPerlinCornerSlope = 5.396 * 0.96487842532;
 /// box is small.
 Interval boundNoise(const NoiseOctave& octave, const Box& box);
 
-/// The octaves of fBm Σ gain^i N_i(p · lacunarity^i) / Σ gain^i, each faded by the band limit; the divisor
-/// counts all octaves asked for. What was weakened or left out is noted in the context under `field`.
-std::vector<NoiseOctave> fbmOctaves(double cellSize, int64_t octaves, double lacunarity, double gain,
-                                    int64_t period, uint32_t seed, const BuildContext& context,
-                                    const char* field);
+/// A fractal sum: Σ gain^i N_i(p · lacunarity^i) / Σ gain^i.
+struct Fractal {
+  double cellSize = 1.0;  // of the first octave, world units
+  int64_t octaves = 5;
+  double lacunarity = 2.0;
+  double gain = 0.5;
+  int64_t period = 0;  // cells of the first octave; 0: none
+  uint32_t seed = 0;
+  glm::dvec3 scroll{0.0};      // world units per second, all octaves
+  glm::dvec3 fineScroll{0.0};  // on top of it for the last octave, in even shares for those between
+};
+
+/// Its octaves at the context's time, each faded by the band limit; the divisor of the weights counts all
+/// octaves asked for. What was weakened or left out is noted in the context under `field`.
+std::vector<NoiseOctave> fbmOctaves(const Fractal& fractal, const BuildContext& context, const char* field);
 
 }  // namespace nephele

@@ -33,6 +33,20 @@ inline const Parameter kLacunarity{"lacunarity",
 inline const Parameter kGain{
     "gain", ParameterType::number, "How much weaker each layer is.", Value{0.5}, {0.0, 1.0, true, false}};
 
+inline const Parameter kScroll{"scroll",
+                               ParameterType::vector,
+                               "Speed at which the whole pattern moves.",
+                               Value{std::array<double, 3>{0, 0, 0}},
+                               kAny,
+                               "world units per second"};
+inline const Parameter kFineScroll{
+    "fine_scroll",
+    ParameterType::vector,
+    "Speed of the last octave on top of it; octaves between move by even shares.",
+    Value{std::array<double, 3>{0, 0, 0}},
+    kAny,
+    "world units per second"};
+
 FieldRow perlinRow();
 FieldRow worleyRow();
 FieldRow perlinWorleyRow();
@@ -41,14 +55,29 @@ FieldRow fbmRow();
 FieldRow ridgedRow();
 FieldRow billowRow();
 FieldRow warpRow();
+FieldRow curlRow();
 FieldRow sphereRow();
+FieldRow ellipsoidRow();
+FieldRow boxRow();
+FieldRow capsuleRow();
+FieldRow torusRow();
+FieldRow planeRow();
+FieldRow meshRow();
+FieldRow cauliflowerRow();
 FieldRow constantRow();
+FieldRow linearRow();
+FieldRow exponentialRow();
 FieldRow heightProfileRow();
+FieldRow weatherMapRow();
 FieldRow remapRow();
 FieldRow addRow();
 FieldRow multiplyRow();
 FieldRow minRow();
 FieldRow maxRow();
 FieldRow mixRow();
+FieldRow unionRow();
+FieldRow intersectionRow();
+FieldRow differenceRow();
+FieldRow smoothUnionRow();
 
 }  // namespace nephele

@@ -7,9 +7,13 @@ namespace nephele {
 
 std::span<const FieldRow> fieldTable() {
   static const std::vector<FieldRow> kRows{
-      perlinRow(), worleyRow(), perlinWorleyRow(), valueRow(),         fbmRow(),   ridgedRow(), billowRow(),
-      warpRow(),   sphereRow(), constantRow(),     heightProfileRow(), remapRow(), addRow(),    multiplyRow(),
-      minRow(),    maxRow(),    mixRow()};
+      perlinRow(),        worleyRow(),      perlinWorleyRow(), valueRow(),  fbmRow(),
+      ridgedRow(),        billowRow(),      warpRow(),         curlRow(),   sphereRow(),
+      ellipsoidRow(),     boxRow(),         capsuleRow(),      torusRow(),  planeRow(),
+      meshRow(),          cauliflowerRow(), constantRow(),     linearRow(), exponentialRow(),
+      heightProfileRow(), weatherMapRow(),  remapRow(),        addRow(),    multiplyRow(),
+      minRow(),           maxRow(),         mixRow(),          unionRow(),  intersectionRow(),
+      differenceRow(),    smoothUnionRow()};
   return kRows;
 }
 

@@ -19,15 +19,23 @@
 
 namespace nephele {
 
-enum class ParameterType { number, integer, choice, pair, vector, curve, field, fields };
+enum class ParameterType { number, integer, choice, pair, vector, curve, file, field, fields };
 
 /// A piecewise linear function: points (x, y) with x growing, constant beyond its ends.
 using Curve = std::vector<std::array<double, 2>>;
 
+/// A file that a recipe names: where it lies, and a hash of what it holds. The hash stands for the file in
+/// the recipe's own.
+struct InputFile {
+  std::string path;
+  std::string contentHash;
+};
+
 /// What a parameter may hold once read. Which one follows from its type: number double, integer int64, choice
-/// string, pair array of 2, vector array of 3, curve Curve, field FieldPtr, fields vector of FieldPtr.
+/// string, pair array of 2, vector array of 3, curve Curve, file InputFile, field FieldPtr, fields vector of
+/// FieldPtr.
 using Value = std::variant<double, int64_t, std::string, std::array<double, 2>, std::array<double, 3>, Curve,
-                           FieldPtr, std::vector<FieldPtr>>;
+                           InputFile, FieldPtr, std::vector<FieldPtr>>;
 
 struct Parameter {
   std::string_view name;
@@ -54,6 +62,7 @@ struct BuildContext {
   int upAxis = 2;          // 1: y, 2: z
   uint32_t seed = 0;       // the recipe's; mixed with each field's own
   std::vector<BandLimitNote>* notes = nullptr;
+  double time = 0.0;  // seconds since frame 0
 };
 
 /// Parameters by name, all present, all in range.
@@ -68,6 +77,7 @@ class Arguments {
   }
   glm::dvec3 vector(std::string_view name) const;
   const Curve& curve(std::string_view name) const { return std::get<Curve>(at(name)); }
+  const std::string& file(std::string_view name) const { return std::get<InputFile>(at(name)).path; }
   const FieldPtr& field(std::string_view name) const { return std::get<FieldPtr>(at(name)); }
   const std::vector<FieldPtr>& fields(std::string_view name) const {
     return std::get<std::vector<FieldPtr>>(at(name));
@@ -78,14 +88,18 @@ class Arguments {
   std::map<std::string, Value, std::less<>> values_;
 };
 
+/// The parameter at fault and a sentence, or nothing where all is well.
+using Complaint = std::optional<std::pair<std::string_view, std::string>>;
+
 struct FieldRow {
   std::string_view name;
   std::string_view sentence;
   std::vector<Parameter> parameters;
   FieldPtr (*build)(const Arguments&, const BuildContext&);
   /// A complaint about values that are each in range but do not go together: the parameter at fault and a
-  /// sentence. nullopt, or a null function, where all is well. Child fields are not looked at.
-  std::optional<std::pair<std::string_view, std::string>> (*validate)(const Arguments&) = nullptr;
+  /// sentence. nullopt, or a null function, where all is well. Child fields are not looked at. Throws
+  /// InputError on what is wrong inside a file.
+  Complaint (*validate)(const Arguments&) = nullptr;
 };
 
 /// All rows, in the order of the docs. A field whose last-named list is all that a recipe gives may be

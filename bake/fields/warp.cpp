@@ -97,7 +97,8 @@ FieldRow warpRow() {
         "Layers of the displacing noise.",
         Value{int64_t{2}},
         {1.0, 16.0, false, false}},
-       kSeed},
+       kSeed,
+       kScroll},
       [](const Arguments& a, const BuildContext& context) -> FieldPtr {
         const double cellSize = a.number("cell_size") / a.number("warp_offset");
         const uint32_t seed = shared::hashCell({int32_t(uint32_t(a.integer("seed"))), 1, 0}, context.seed);
@@ -105,7 +106,14 @@ FieldRow warpRow() {
         for (int axis = 0; axis < 3; ++axis) {
           BuildContext quiet = context;
           if (axis > 0) quiet.notes = nullptr;  // the three axes leave out the same octaves
-          noise[axis] = fbmOctaves(cellSize, a.integer("octaves"), 2.0, 0.5, 0, shared::seedApart(seed, axis),
+          noise[axis] = fbmOctaves({cellSize,
+                                    a.integer("octaves"),
+                                    2.0,
+                                    0.5,
+                                    0,
+                                    shared::seedApart(seed, axis),
+                                    a.vector("scroll"),
+                                    {}},
                                    quiet, "warp");
         }
         return std::make_shared<Warp>(a.field("input"), a.number("warp_scale"), std::move(noise));

@@ -66,6 +66,29 @@ NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
   return (y0 + sz * (y1 - y0)) * kPerlinScale;
 }
 
+// Slope of perlinNoise per cell along x, y, z: the derivative of the same polynomial.
+NPH_FN vec3 perlinSlope(ivec3 cell, vec3 f, int period, uint seed) {
+  vec3 fade = vec3(fadeQuintic(f.x), fadeQuintic(f.y), fadeQuintic(f.z));
+  vec3 rise = 30.0f * f * f * (f - vec3(1.0f)) * (f - vec3(1.0f));  // the fade's derivative
+  vec3 slope = vec3(0.0f);
+  for (int c = 0; c < 8; ++c) {
+    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
+    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    uint h = hashGradient(at, seed);
+    vec3 d = f - vec3(float(o.x), float(o.y), float(o.z));
+    vec3 g = vec3(gradientDot(h, 1.0f, 0.0f, 0.0f), gradientDot(h, 0.0f, 1.0f, 0.0f), gradientDot(h, 0.0f, 0.0f, 1.0f));
+    float value = g.x * d.x + g.y * d.y + g.z * d.z;
+    float wx = o.x == 1 ? fade.x : 1.0f - fade.x;
+    float wy = o.y == 1 ? fade.y : 1.0f - fade.y;
+    float wz = o.z == 1 ? fade.z : 1.0f - fade.z;
+    float rx = o.x == 1 ? rise.x : -rise.x;
+    float ry = o.y == 1 ? rise.y : -rise.y;
+    float rz = o.z == 1 ? rise.z : -rise.z;
+    slope += vec3(rx * wy * wz, wx * ry * wz, wx * wy * rz) * value + (wx * wy * wz) * g;
+  }
+  return slope * kPerlinScale;
+}
+
 // Value noise in [−1, 1]: one random value a lattice point, quintic fade between.
 NPH_FN float valueNoise(ivec3 cell, vec3 f, int period, uint seed) {
   float corner[8];

@@ -104,8 +104,8 @@ TEST(Warp, ReadsItsInputAtDisplacedPlaces) {
     for (int axis = 0; axis < 3; ++axis) {
       const float zero = 0.0f;
       float shift = 0.0f;
-      for (const NoiseOctave& octave :
-           fbmOctaves(1.0, 2, 2.0, 0.5, 0, shared::seedApart(seed, axis), {0.01, 2, 0, nullptr}, "warp"))
+      for (const NoiseOctave& octave : fbmOctaves(
+               {1.0, 2, 2.0, 0.5, 0, shared::seedApart(seed, axis), {}, {}}, {0.01, 2, 0, nullptr}, "warp"))
         addNoiseAtPoints(octave, Points{p, 1, &zero, &zero, &zero}, &shift);
       q[axis] += 0.8 * double(shift);
     }

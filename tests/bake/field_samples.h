@@ -1,5 +1,5 @@
 // Fields made from the table for tests: every row with its defaults, child fields filled with noise and
-// shapes, so that a new row is tested without a new line here.
+// shapes, files with samples, so that a new row is tested without a new line here.
 #pragma once
 
 #include <map>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "bake/fields/table.h"
+#include "bench/sample_files.h"
 
 namespace nephele::test {
 
@@ -18,6 +19,8 @@ inline FieldPtr makeField(const std::string& name, std::map<std::string, Value, 
     if (given.contains(parameter.name)) continue;
     if (parameter.fallback) {
       given.emplace(parameter.name, *parameter.fallback);
+    } else if (parameter.type == ParameterType::file) {
+      given.emplace(parameter.name, InputFile{bench::sampleFile(name), {}});
     } else if (parameter.type == ParameterType::field) {
       given.emplace(parameter.name,
                     makeField("fbm", {{"cell_size", 0.7}, {"seed", int64_t(parameter.name.size())}}));

@@ -84,14 +84,14 @@ TEST(Fbm, KeepsItsPrecisionFarFromTheOrigin) {
 
 TEST(Fbm, OctavesAreSeededApart) {
   // At the origin every octave of equal seed would be 0; with cells half a unit off they would all be alike.
-  const auto octaves = fbmOctaves(1.0, 5, 2.0, 0.5, 0, 9u, {0.001, 2, 0, nullptr}, "fbm");
+  const auto octaves = fbmOctaves({1.0, 5, 2.0, 0.5, 0, 9u, {}, {}}, {0.001, 2, 0, nullptr}, "fbm");
   ASSERT_EQ(octaves.size(), 5u);
   for (size_t a = 0; a < octaves.size(); ++a)
     for (size_t b = 0; b < a; ++b) EXPECT_NE(octaves[a].seed, octaves[b].seed);
 }
 
 TEST(Fbm, WeightsAreThoseOfTheFormula) {
-  const auto octaves = fbmOctaves(1.0, 3, 2.0, 0.5, 0, 0u, {1e-4, 2, 0, nullptr}, "fbm");
+  const auto octaves = fbmOctaves({1.0, 3, 2.0, 0.5, 0, 0u, {}, {}}, {1e-4, 2, 0, nullptr}, "fbm");
   ASSERT_EQ(octaves.size(), 3u);
   EXPECT_FLOAT_EQ(octaves[0].weight, float(1.0 / 1.75));
   EXPECT_FLOAT_EQ(octaves[1].weight, float(0.5 / 1.75));
@@ -102,13 +102,76 @@ TEST(Fbm, WeightsAreThoseOfTheFormula) {
 TEST(Fbm, LeavesOutWhatTheGridCannotHold) {
   std::vector<BandLimitNote> notes;
   const BuildContext context{0.1, 2, 0, &notes};  // cells of 1, ½, ¼, ⅛ unit are 10, 5, 2.5, 1.25 voxels
-  const auto octaves = fbmOctaves(1.0, 4, 2.0, 0.5, 0, 0u, context, "fbm");
+  const auto octaves = fbmOctaves({1.0, 4, 2.0, 0.5, 0, 0u, {}, {}}, context, "fbm");
   ASSERT_EQ(octaves.size(), 3u);
   EXPECT_FLOAT_EQ(octaves[2].weight, float(0.25 * 0.25 / 1.875));
   ASSERT_EQ(notes.size(), 2u);
   EXPECT_DOUBLE_EQ(notes[0].weight, 0.25);
   EXPECT_EQ(notes[1].octave, 3);
   EXPECT_EQ(notes[1].weight, 0.0);
+}
+
+TEST(Perlin, SlopeIsItsDerivative) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<float> unit(0.05f, 0.95f);
+  for (int n = 0; n < 2000; ++n) {
+    const glm::ivec3 cell(n, -n, 3 * n);
+    const glm::vec3 f(unit(random), unit(random), unit(random));
+    const glm::vec3 slope = shared::perlinSlope(cell, f, 0, 8u);
+    constexpr float kStep = 0.01f;
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::vec3 ahead = f, behind = f;
+      ahead[axis] += kStep;
+      behind[axis] -= kStep;
+      const float rise = shared::perlinNoise(cell, ahead, 0, 8u) - shared::perlinNoise(cell, behind, 0, 8u);
+      // Central differences err by h²/6 of the third derivative, at most some 60 per cell³.
+      ASSERT_NEAR(rise / (2.0f * kStep), slope[axis], 2e-3f);
+    }
+  }
+}
+
+TEST(Curl, HasNoSources) {
+  std::array<FieldPtr, 3> flow;
+  for (int axis = 0; axis < 3; ++axis)
+    flow[size_t(axis)] = makeField("curl", {{"component", std::string(1, char('x' + axis))}});
+  constexpr double kStep = 0.02;
+  double largestSlope = 0.0;
+  for (int n = 0; n < 500; ++n) {
+    const glm::dvec3 p(0.61 * n + 0.3, 0.37 * n + 0.4, -0.83 * n + 0.1);
+    double divergence = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::dvec3 d(0.0);
+      d[axis] = kStep;
+      const double slope =
+          (double(valueAt(*flow[size_t(axis)], p + d)) - double(valueAt(*flow[size_t(axis)], p - d))) /
+          (2.0 * kStep);
+      divergence += slope;
+      largestSlope = std::max(largestSlope, std::abs(slope));
+    }
+    ASSERT_NEAR(divergence, 0.0, 0.02) << "at " << n;
+  }
+  EXPECT_GT(largestSlope, 0.5);
+}
+
+TEST(Scroll, MovesThePatternWithTime) {
+  const std::array<double, 3> speed{0.5, -0.25, 1.0};
+  BuildContext later{0.01, 2, 0, nullptr, 3.0};
+  for (const char* name : {"perlin", "fbm", "worley", "ridged", "value", "perlin_worley", "curl"}) {
+    const FieldPtr start = makeField(name, {{"scroll", speed}});
+    const FieldPtr moved = makeField(name, {{"scroll", speed}}, later);
+    for (int n = 0; n < 50; ++n) {
+      const glm::dvec3 p(0.11 * n, 0.23 * n, -0.31 * n);
+      ASSERT_NEAR(valueAt(*start, p), valueAt(*moved, p + 3.0 * glm::dvec3(0.5, -0.25, 1.0)), 2e-5f) << name;
+    }
+  }
+}
+
+TEST(Scroll, FineOctavesMayMoveAlone) {
+  const glm::dvec3 all(1.0, 0.0, 0.0), fine(0.0, 2.0, 0.0);
+  const auto octaves = fbmOctaves({1.0, 3, 2.0, 0.5, 0, 0u, all, fine}, {1e-4, 2, 0, nullptr, 2.0}, "fbm");
+  EXPECT_EQ(octaves[0].offset, 2.0 * all);
+  EXPECT_EQ(octaves[1].offset, 2.0 * (all + 0.5 * fine));
+  EXPECT_EQ(octaves[2].offset, 2.0 * (all + fine));
 }
 
 }  // namespace

@@ -7,6 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "bench/sample_files.h"
+#include "tests/scratch_folder.h"
+
 namespace nephele::test {
 namespace {
 
@@ -76,6 +79,11 @@ TEST(Pipeline, NumbersNamesAndListsStandForFields) {
   EXPECT_EQ(inputs[2]->row->name, "fbm");
 }
 
+TEST(Pipeline, ABareListLeavesOtherParametersAtTheirDefaults) {
+  const Pipeline pipeline = load(withDensity("{ smooth_union: [sphere, 0.5] }"));
+  EXPECT_DOUBLE_EQ(std::get<double>(pipeline.assets.front().density->values.at("blend")), 0.3);
+}
+
 struct Case {
   const char* density;
   const char* complaint;
@@ -98,6 +106,23 @@ TEST(Pipeline, RefusesBadFieldsWithPlaceAndSentence) {
       {"{ height_profile: { base: 1, top: 1 } }", "4:43: 'base' and 'top' are equal"},
       {"{ height_profile: { curve: [[1, 0], [0, 1]] } }",
        "4:50: the points of 'curve' of 'height_profile' must have growing"},
+      {"{ capsule: { radius: 0 } }", "4:35: 'radius' of 'capsule' must be greater than 0"},
+      {"{ ellipsoid: { radii: [1, 0, 1] } }", "4:40: 'radii' of 'ellipsoid' must be greater than 0"},
+      {"{ ellipsoid: { radii: [1, 1e-40, 1] } }", "4:29: 'radii' must lie between 1e-15 and 1e15"},
+      {"{ box: { size: [1, 2, 1], rounding: 0.6 } }", "4:40: 'rounding' must not exceed half"},
+      {"{ torus: { minor: -.inf } }", "4:32: 'minor' of 'torus'"},
+      {"{ plane: { normal: up } }", "4:33: 'normal' of 'plane'"},
+      {"{ linear: { from: 2, to: 2 } }", "4:35: 'from' and 'to' are equal"},
+      {"{ exponential: { scale_height: 0 } }",
+       "4:45: 'scale_height' of 'exponential' must be greater than 0"},
+      {"{ exponential: { below: nothin } }",
+       "4:38: 'below' of 'exponential' has no choice 'nothin'; did you mean"},
+      {"{ smooth_union: { inputs: [1], blend: -1 } }", "4:52: 'blend' of 'smooth_union'"},
+      {"{ difference: [] }", "4:28: 'difference' takes a list of at least one field"},
+      {"{ cauliflower: { count: 200 } }", "4:31: 'scales' and 'count' ask for 8040200 bubbles"},
+      {"{ mesh: { } }", "4:16: 'mesh' needs 'file'"},
+      {"{ mesh: { file: 7.obj } }", "4:30: 'file' of 'mesh' names no file: "},
+      {"{ weather_map: { file: . } }", "4:37: 'file' of 'weather_map' names no file: "},
       {"{ sphere: {}, fbm: {} }", "4:14: 'density' must be one field"},
   };
   for (const Case& c : cases) {
@@ -163,6 +188,44 @@ TEST(RecipeHash, SeesContentAndNotSpelling) {
   EXPECT_NE(plain, hash(withDensity("{ multiply: [{ sphere: { radius: 1.001 } }, 0.5] }")));
   EXPECT_NE(plain, hash(withDensity("{ multiply: [0.5, { sphere: { radius: 1 } }] }")));
   EXPECT_NE(plain, hash("seed: 1\n" + withDensity("{ multiply: [{ sphere: { radius: 1 } }, 0.5] }")));
+}
+
+/// A recipe beside a mesh; its name in the recipe is relative to it.
+struct RecipeWithMesh {
+  explicit RecipeWithMesh(const std::string& mesh) {
+    std::filesystem::create_directory(folder.file("models"));
+    folder.write("models/m.obj", mesh);
+    recipe = folder.write("r.yaml", withDensity("{ mesh: { file: models/m.obj } }"));
+  }
+  ScratchFolder folder;
+  std::string recipe;
+};
+
+TEST(Files, LieRelativeToTheRecipeAndTheirContentIsInItsHash) {
+  const RecipeWithMesh cube(bench::cubeAsObj(0.5)), same(bench::cubeAsObj(0.5)), other(bench::cubeAsObj(0.6));
+  const auto hash = [](const RecipeWithMesh& files) {
+    const Pipeline pipeline = loadPipeline(files.recipe);
+    return recipeHash(pipeline, pipeline.assets.front());
+  };
+  EXPECT_EQ(hash(cube), hash(same));
+  EXPECT_NE(hash(cube), hash(other));
+  const Pipeline pipeline = loadPipeline(cube.recipe);
+  const FieldPtr field = buildField(*pipeline.assets.front().density, {0.1, 2, 0, nullptr});
+  EXPECT_NEAR(field->support().high.x, 0.5, 1e-6);
+}
+
+TEST(Files, ComplaintsNameTheFileAndStandBesideThoseOfTheRecipe) {
+  const RecipeWithMesh files("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  files.folder.write("r.yaml", withDensity("{ add: [{ mesh: { file: models/m.obj } }, perlim] }"));
+  try {
+    loadPipeline(files.recipe);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.diagnostics().size(), 2u);
+    const std::string all = error.what();
+    EXPECT_NE(all.find("m.obj: error: is not closed: 3 open edges"), std::string::npos) << all;
+    EXPECT_NE(all.find("unknown field 'perlim'"), std::string::npos) << all;
+  }
 }
 
 TEST(Frames, ReadsRangesAndNothingElse) {

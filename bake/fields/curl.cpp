@@ -1,0 +1,90 @@
+// Curl of a vector noise: the row curl. Depends on field.h, perlin.h and shared text.
+#include <array>
+#include <cmath>
+
+#include "bake/fields/cell_place.h"
+#include "bake/fields/perlin.h"
+#include "bake/fields/rows.h"
+#include "bake/fields/shared_text.h"
+
+namespace nephele {
+namespace {
+
+/// One component, or the length, of ∇ × (N_x, N_y, N_z) per cell, three gradient noises seeded apart, over
+/// its largest possible component: a flow without sources [Bridson 2007].
+class Curl final : public Field {
+ public:
+  Curl(const std::array<NoiseOctave, 3>& potential, int component)
+      : potential_(potential), component_(component) {}
+
+  void evaluate(const Points& points, float* values) const override {
+    const NoiseOctave& octave = potential_[0];
+    const glm::dvec3 origin = points.origin - octave.offset;
+    const CellPlace x0 = cellPlace(origin.x, octave.cellSize), y0 = cellPlace(origin.y, octave.cellSize),
+                    z0 = cellPlace(origin.z, octave.cellSize);
+    const float frequency = float(1.0 / octave.cellSize);
+    for (size_t n = 0; n < points.count; ++n) {
+      const glm::vec3 p(x0.fraction + points.x[n] * frequency, y0.fraction + points.y[n] * frequency,
+                        z0.fraction + points.z[n] * frequency);
+      const glm::vec3 whole(std::floor(p.x), std::floor(p.y), std::floor(p.z));
+      values[n] = valueAt(
+          {cellAfter(x0.cell, whole.x), cellAfter(y0.cell, whole.y), cellAfter(z0.cell, whole.z)}, p - whole);
+    }
+  }
+
+  /// The length of three components of at most 1 is at most √3.
+  Interval bounds(const Box&) const override {
+    constexpr double kLongest = 1.7321, kRoom = 1e-5;
+    return component_ == kLength ? Interval{0.0, kLongest} : Interval{-1.0 - kRoom, 1.0 + kRoom};
+  }
+
+  Box support() const override { return Box{}; }
+
+  static constexpr int kLength = 3;
+
+ private:
+  float valueAt(const glm::ivec3& cell, const glm::vec3& f) const {
+    // Each component is a difference of two slopes.
+    constexpr float kScale = float(0.5 / kPerlinSlope);
+    std::array<glm::vec3, 3> slope;
+    for (size_t axis = 0; axis < 3; ++axis)
+      slope[axis] = shared::perlinSlope(cell, f, potential_[axis].period, potential_[axis].seed);
+    const glm::vec3 curl =
+        kScale * glm::vec3(slope[2].y - slope[1].z, slope[0].z - slope[2].x, slope[1].x - slope[0].y);
+    if (component_ != kLength) return curl[component_];
+    return std::sqrt(curl.x * curl.x + curl.y * curl.y + curl.z * curl.z);
+  }
+
+  std::array<NoiseOctave, 3> potential_;
+  int component_;
+};
+
+}  // namespace
+
+FieldRow curlRow() {
+  return {
+      "curl",
+      "One component, in [-1, 1], or the length of the curl of a vector noise: a flow without sources.",
+      {{"component",
+        ParameterType::choice,
+        "Which component.",
+        Value{std::string("length")},
+        kAny,
+        {},
+        {"x", "y", "z", "length"}},
+       kCellSize,
+       kSeed,
+       kPeriod,
+       kScroll},
+      [](const Arguments& a, const BuildContext& context) -> FieldPtr {
+        const std::string& name = a.choice("component");
+        const uint32_t seed = shared::hashCell({int32_t(uint32_t(a.integer("seed"))), 3, 0}, context.seed);
+        std::array<NoiseOctave, 3> potential;
+        for (int axis = 0; axis < 3; ++axis)
+          potential[size_t(axis)] = {a.number("cell_size"), 1.0f, shared::seedApart(seed, axis),
+                                     int(a.integer("period")), context.time * a.vector("scroll")};
+        return std::make_shared<Curl>(potential, name == "length" ? Curl::kLength : name[0] - 'x');
+      }};
+}
+
+}  // namespace nephele

@@ -1,0 +1,70 @@
+// A field that folds a list of fields into one, value by value. Depends on field.h and table.h.
+#pragma once
+
+#include <algorithm>
+
+#include "bake/fields/table.h"
+
+namespace nephele {
+
+inline size_t countOf(const Points& points) { return points.count; }
+inline size_t countOf(const Lattice&) { return size_t(kBlockPoints); }
+
+/// What a fold does with its first input: takes it as it is. Folds hide what they do otherwise.
+struct Fold {
+  static float start(float a) { return a; }
+  static Interval startOver(const Interval& a) { return a; }
+};
+
+/// A fold over a list. Rule gives, beside what Fold does: apply(sum, value), join(Interval, Interval) over
+/// the same, hold(Box, Box) of supports, and kZeroStays: whether what is 0 stays so whatever follows.
+template <class Rule>
+class FoldField final : public Field {
+ public:
+  FoldField(std::vector<FieldPtr> inputs, Rule rule) : inputs_(std::move(inputs)), rule_(rule) {}
+
+  void evaluate(const Points& points, float* values) const override { fold(points, values); }
+  void evaluate(const Lattice& lattice, float* values) const override { fold(lattice, values); }
+
+  Interval bounds(const Box& box) const override {
+    Interval sum = rule_.startOver(inputs_.front()->bounds(box));
+    for (size_t i = 1; i < inputs_.size(); ++i) {
+      if (Rule::kZeroStays && sum.low == 0.0 && sum.high == 0.0) break;
+      sum = rule_.join(sum, inputs_[i]->bounds(box));
+    }
+    return sum;
+  }
+
+  Box support() const override {
+    Box box = inputs_.front()->support();
+    for (size_t i = 1; i < inputs_.size(); ++i) box = rule_.hold(box, inputs_[i]->support());
+    return box;
+  }
+
+ private:
+  template <class Where>
+  void fold(const Where& where, float* values) const {
+    const size_t count = countOf(where);
+    inputs_.front()->evaluate(where, values);
+    for (size_t n = 0; n < count; ++n) values[n] = rule_.start(values[n]);
+    for (size_t i = 1; i < inputs_.size(); ++i) {
+      if (Rule::kZeroStays && std::all_of(values, values + count, [](float v) { return v == 0.0f; })) return;
+      float next[kBlockPoints];
+      inputs_[i]->evaluate(where, next);
+      for (size_t n = 0; n < count; ++n) values[n] = rule_.apply(values[n], next[n]);
+    }
+  }
+
+  std::vector<FieldPtr> inputs_;
+  Rule rule_;
+};
+
+inline const Parameter kInputs{"inputs", ParameterType::fields, "One field or more, in order.", std::nullopt};
+
+/// For rows whose list is called `inputs` and whose rule needs no numbers.
+template <class Rule>
+FieldPtr buildFold(const Arguments& a, const BuildContext&) {
+  return std::make_shared<FoldField<Rule>>(a.fields("inputs"), Rule{});
+}
+
+}  // namespace nephele
