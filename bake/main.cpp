@@ -10,7 +10,10 @@
 #include "bake/run.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "base/tolerance.h"
 #include "base/version.h"
+#include "volume/bricks.h"
+#include "volume/difference.h"
 #include "volume/info.h"
 
 namespace {
@@ -27,6 +30,7 @@ struct Command {
   std::vector<std::string> files;
   bool json = false;
   std::string node;
+  std::string first, second, tolerance;
 };
 
 Shard parseShard(const std::string& text) {
@@ -80,6 +84,14 @@ int nodes(const Command& command) {
   return kExitDone;
 }
 
+int diff(const Command& command) {
+  const double tolerance = command.tolerance.empty() ? -1.0 : parseTolerance(command.tolerance);
+  const GridDifference d = difference(loadBricks(command.first), loadBricks(command.second));
+  std::cout << (command.json ? differenceAsJson(d, command.first, command.second) : differenceAsText(d));
+  const bool over = std::max(d.relativeDensity(), d.relativeDepth()) > tolerance;
+  return tolerance >= 0.0 && over ? kExitNo : kExitDone;
+}
+
 int notBuilt(const std::string& name) {
   throw InputError({}, "'nephele-bake " + name + "' is not built yet");
 }
@@ -110,7 +122,16 @@ int run(int argc, char** argv) {
   infoCommand->add_flag("--json", command.json, "As JSON");
   CLI::App* const nodesCommand = app.add_subcommand("nodes", "Every field with its parameters");
   nodesCommand->add_option("NAME", command.node, "One field in full; default: all, a line each");
-  for (const char* const name : {"diff", "check", "chart"})
+  CLI::App* const diffCommand =
+      app.add_subcommand("diff", "Density and optical-depth difference; exit 3 if over the tolerance");
+  diffCommand->add_option("A.vdb", command.first, "The reference")->required();
+  diffCommand->add_option("B.vdb", command.second, "What is held against it")->required();
+  diffCommand
+      ->add_option("--tolerance", command.tolerance,
+                   "Largest density and optical-depth difference, relative to A's largest: 0.03 or 3%")
+      ->type_name("E");
+  diffCommand->add_flag("--json", command.json, "As JSON");
+  for (const char* const name : {"check", "chart"})
     app.add_subcommand(name, "Not built yet")->allow_extras()->callback([name] { notBuilt(name); });
   try {
     app.parse(argc, argv);
@@ -119,6 +140,7 @@ int run(int argc, char** argv) {
   }
   if (infoCommand->parsed()) return info(command);
   if (nodesCommand->parsed()) return nodes(command);
+  if (diffCommand->parsed()) return diff(command);
   return bake(command);
 }
 

@@ -115,18 +115,4 @@ std::string comparisonAsJson(const Comparison& comparison) {
          "\n";
 }
 
-double parseTolerance(const std::string& text) {
-  char* end = nullptr;
-  double value = std::strtod(text.c_str(), &end);
-  std::string rest = text.empty() ? "empty" : end;
-  if (rest == "%") {
-    constexpr double kPercent = 100.0;
-    value /= kPercent;
-    rest.clear();
-  }
-  if (end == text.c_str() || !rest.empty() || !std::isfinite(value) || value < 0.0)
-    throw InputError({}, "'" + text + "' is no tolerance; write 0.03 or 3%");
-  return value;
-}
-
 }  // namespace nephele

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/picture.h"
+#include "base/tolerance.h"
 
 namespace nephele {
 
@@ -28,8 +29,5 @@ Comparison comparePictures(const Picture& picture, const std::string& pictureNam
 /// "relative RMSE 1.2%, …" in one line; or JSON with the keys pixels, relative_rmse, bias, p99, max.
 std::string comparisonAsText(const Comparison& comparison);
 std::string comparisonAsJson(const Comparison& comparison);
-
-/// "0.03" or "3%" → 0.03. Throws InputError for anything else, a negative number, or one that is not finite.
-double parseTolerance(const std::string& text);
 
 }  // namespace nephele

@@ -1,0 +1,39 @@
+// How far one density is from another, for `diff`: voxel by voxel and along random rays. Depends on bricks.h
+// and base.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "volume/bricks.h"
+
+namespace nephele {
+
+/// B against A. Depths are ∫ ρ ds in world units, for a medium of unit extinction.
+struct GridDifference {
+  bool sameTransform = false;  // else B is read between its samples at A's, and A at B's
+  uint64_t voxelsBoth = 0;   // samples above 0 in both, in A alone, in B alone (each grid's own samples where
+  uint64_t voxelsOnlyA = 0;  // transforms differ)
+  uint64_t voxelsOnlyB = 0;
+  double maximumA = 0.0;  // largest density
+  double largest = 0.0;   // largest |density difference|
+  double rms = 0.0;       // over samples above 0 in either
+  uint64_t rays = 0;
+  double largestDepthA = 0.0;  // of all rays
+  double largestDepth = 0.0;   // largest |depth difference|
+  double rmsDepth = 0.0;
+
+  /// The two figures that --tolerance judges: over A's maximum, over A's largest depth. 0 where both are 0,
+  /// infinite where A is empty and B is not.
+  double relativeDensity() const;
+  double relativeDepth() const;
+};
+
+/// Compares over all samples of both grids and along `rays` random chords of their common box (uniform ends
+/// on its bounding sphere, fixed seed). Same result on any number of threads.
+GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t rays = 10000);
+
+std::string differenceAsText(const GridDifference& d);
+std::string differenceAsJson(const GridDifference& d, const std::string& pathA, const std::string& pathB);
+
+}  // namespace nephele
