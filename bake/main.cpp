@@ -12,7 +12,6 @@
 #include "base/files.h"
 #include "base/tolerance.h"
 #include "base/version.h"
-#include "volume/bricks.h"
 #include "volume/difference.h"
 #include "volume/info.h"
 
@@ -86,7 +85,7 @@ int nodes(const Command& command) {
 
 int diff(const Command& command) {
   const double tolerance = command.tolerance.empty() ? -1.0 : parseTolerance(command.tolerance);
-  const GridDifference d = difference(loadBricks(command.first), loadBricks(command.second));
+  const GridDifference d = differenceOfFiles(command.first, command.second);
   std::cout << (command.json ? differenceAsJson(d, command.first, command.second) : differenceAsText(d));
   const bool over = std::max(d.relativeDensity(), d.relativeDepth()) > tolerance;
   return tolerance >= 0.0 && over ? kExitNo : kExitDone;

@@ -171,6 +171,10 @@ GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t r
   return d;
 }
 
+GridDifference differenceOfFiles(const std::string& pathA, const std::string& pathB) {
+  return difference(loadBricks(pathA), loadBricks(pathB));
+}
+
 std::string differenceAsText(const GridDifference& d) {
   char text[512];
   std::snprintf(text, sizeof text,

@@ -33,6 +33,9 @@ struct GridDifference {
 /// on its bounding sphere, fixed seed). Same result on any number of threads.
 GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t rays = 10000);
 
+/// The same for the density grids of two files. Throws as loadBricks does.
+GridDifference differenceOfFiles(const std::string& pathA, const std::string& pathB);
+
 std::string differenceAsText(const GridDifference& d);
 std::string differenceAsJson(const GridDifference& d, const std::string& pathA, const std::string& pathB);
 

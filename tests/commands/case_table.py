@@ -73,7 +73,10 @@ BAKE = [
     says("bake pipeline.yaml --only bell", 2, "bell", "did you mean 'ball'?"),
     says("bake pipeline.yaml --frames 3-1", 2, "--frames must read A-B"),
     says("bake pipeline.yaml --shard 3/2", 2, "--shard must read I/N"),
-    says("bake diff good.vdb good.vdb", 2, "not built yet"),
+    says("bake check good.vdb", 2, "not built yet"),
+    says("bake diff good.vdb nowhere.vdb", 2, "nowhere.vdb: error: no such file"),
+    says("bake diff good.vdb good.vdb --tolerance some", 2, "'some' is no tolerance"),
+    prints("bake diff good.vdb good.vdb --tolerance 0", "largest difference 0 "),
     says("bake nodes sphre", 2, "sphre", "did you mean 'sphere'?"),
     # files that cannot be written
     says("bake pipeline.yaml --out a_file", 1, "a_file"),
