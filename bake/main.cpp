@@ -29,7 +29,7 @@ struct Command {
   std::vector<std::string> files;
   bool json = false;
   std::string node;
-  std::string first, second, tolerance;
+  std::string first, second, tolerance, page;
 };
 
 Shard parseShard(const std::string& text) {
@@ -79,7 +79,10 @@ int info(const Command& command) {
 }
 
 int nodes(const Command& command) {
-  std::cout << (command.node.empty() ? nodesAsText() : nodeAsText(command.node));
+  if (!command.page.empty())
+    writeFieldsPage(command.page);
+  else
+    std::cout << (command.node.empty() ? nodesAsText() : nodeAsText(command.node));
   return kExitDone;
 }
 
@@ -121,6 +124,9 @@ int run(int argc, char** argv) {
   infoCommand->add_flag("--json", command.json, "As JSON");
   CLI::App* const nodesCommand = app.add_subcommand("nodes", "Every field with its parameters");
   nodesCommand->add_option("NAME", command.node, "One field in full; default: all, a line each");
+  nodesCommand
+      ->add_option("--markdown", command.page, "Write fields.md and a picture of each field into this folder")
+      ->type_name("DIR");
   CLI::App* const diffCommand =
       app.add_subcommand("diff", "Density and optical-depth difference; exit 3 if over the tolerance");
   diffCommand->add_option("A.vdb", command.first, "The reference")->required();

@@ -62,6 +62,15 @@ std::string shown(const Value& value) {
 
 }  // namespace
 
+std::string parameterKind(const Parameter& parameter) {
+  std::string text(nameOf(parameter.type));
+  for (const std::string& choice : parameter.choices)
+    text += (choice == parameter.choices.front() ? ": " : " | ") + choice;
+  if (!parameter.unit.empty()) text += ", " + std::string(parameter.unit);
+  if (const std::string range = yaml::describe(parameter.range); !range.empty()) text += ", " + range;
+  return text + (parameter.fallback ? ", default " + shown(*parameter.fallback) : ", required");
+}
+
 std::string nodesAsText() {
   size_t width = 0;
   for (const FieldRow& row : fieldTable()) width = std::max(width, row.name.size());
@@ -80,14 +89,9 @@ std::string nodeAsText(const std::string& name) {
     throw InputError({}, "unknown field '" + name + "'", didYouMean(name, names));
   }
   std::string text = std::string(row->name) + ": " + std::string(row->sentence) + "\n";
-  for (const Parameter& parameter : row->parameters) {
-    text += "  " + std::string(parameter.name) + "  (" + std::string(nameOf(parameter.type));
-    if (!parameter.unit.empty()) text += ", " + std::string(parameter.unit);
-    if (const std::string range = yaml::describe(parameter.range); !range.empty()) text += ", " + range;
-    text += parameter.fallback ? ", default " + shown(*parameter.fallback) : ", required";
-    text += ")\n      " + std::string(parameter.sentence) + "\n";
-    for (const std::string& choice : parameter.choices) text += "      - " + choice + "\n";
-  }
+  for (const Parameter& parameter : row->parameters)
+    text += "  " + std::string(parameter.name) + "  (" + parameterKind(parameter) + ")\n      " +
+            std::string(parameter.sentence) + "\n";
   return text;
 }
 

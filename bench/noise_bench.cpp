@@ -4,12 +4,12 @@
 
 #include <cmath>
 
+#include "bake/field_examples.h"
 #include "bake/fields/noise_kernels.h"
 #include "bake/fields/perlin.h"
 #include "bake/fields/shared_text.h"
 #include "bake/fields/table.h"
 #include "bake/fields/worley_kernels.h"
-#include "bench/fields.h"
 
 namespace nephele::bench {
 namespace {
@@ -81,7 +81,7 @@ BENCHMARK(perlinDefinition)->Arg(1)->Arg(5)->ArgName("octaves");
 
 /// Every row of the table at its defaults, cells of 50 voxels.
 void field(benchmark::State& state, const std::string& name) {
-  const FieldPtr built = fieldForBench(name, 1.0 / kFeature);
+  const FieldPtr built = examples::exampleField(name, {1.0 / kFeature, 2, 0, nullptr});
   overLattice(state, [&](const Lattice& at, float* v) {
     built->evaluate(Lattice{(at.origin - 64.0) / kFeature, 1.0 / kFeature}, v);
   });

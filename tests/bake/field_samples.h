@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "bake/field_examples.h"
 #include "bake/fields/table.h"
-#include "bench/sample_files.h"
 
 namespace nephele::test {
 
@@ -20,7 +20,7 @@ inline FieldPtr makeField(const std::string& name, std::map<std::string, Value, 
     if (parameter.fallback) {
       given.emplace(parameter.name, *parameter.fallback);
     } else if (parameter.type == ParameterType::file) {
-      given.emplace(parameter.name, InputFile{bench::sampleFile(name), {}});
+      given.emplace(parameter.name, InputFile{examples::sampleFile(name), {}});
     } else if (parameter.type == ParameterType::field) {
       given.emplace(parameter.name,
                     makeField("fbm", {{"cell_size", 0.7}, {"seed", int64_t(parameter.name.size())}}));

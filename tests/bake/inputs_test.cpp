@@ -57,7 +57,7 @@ FieldPtr meshOf(const std::string& path, double falloff) {
 
 TEST(Mesh, ACubeIsTheBox) {
   const ScratchFolder folder;
-  const FieldPtr mesh = meshOf(folder.write("cube.obj", bench::cubeAsObj(0.5)), 0.3);
+  const FieldPtr mesh = meshOf(folder.write("cube.obj", examples::cubeAsObj(0.5)), 0.3);
   const FieldPtr box = makeField("box", {{"size", Vector{1, 1, 1}}, {"rounding", 0.0}, {"falloff", 0.3}});
   std::mt19937_64 random(1);
   int inside = 0;
@@ -89,7 +89,7 @@ TEST(Mesh, ABallOfManyFacesOnBlocksIsTheSphereUpToItsFacets) {
 TEST(Mesh, RaysThroughEdgesAndCornersCountOnce) {
   // Lines along z through the octahedron's tips, edges and the diagonals of the cube's faces.
   const ScratchFolder folder;
-  for (const std::string& text : {ballAsObj(0, 1.0), bench::cubeAsObj(1.0)}) {
+  for (const std::string& text : {ballAsObj(0, 1.0), examples::cubeAsObj(1.0)}) {
     const std::string path = folder.write("m.obj", text);
     const Solid solid(closedMesh(readMesh(path), path), 1.0, glm::dvec3(0.0));
     for (int i = -4; i <= 4; ++i)
@@ -117,8 +117,8 @@ TEST(Mesh, DistanceToATriangleIsThatOfItsNearestPart) {
 TEST(Mesh, CavitiesAreEmptyAndInsideOutIsTheSame) {
   const ScratchFolder folder;
   // A second, smaller cube whose faces turn the other way is a hole; indices continue from 8.
-  std::string hollow = bench::cubeAsObj(0.8);
-  std::string inner = bench::cubeAsObj(0.4);
+  std::string hollow = examples::cubeAsObj(0.8);
+  std::string inner = examples::cubeAsObj(0.4);
   hollow += inner.substr(0, inner.find("f "));
   hollow += "f 10 12 11 9\nf 15 16 14 13\nf 13 14 10 9\nf 12 16 15 11\nf 11 15 13 9\nf 14 16 12 10\n";
   const FieldPtr field = meshOf(folder.write("hollow.obj", hollow), 0.0);
@@ -133,7 +133,7 @@ TEST(Mesh, CavitiesAreEmptyAndInsideOutIsTheSame) {
 TEST(Mesh, ScaleAndCentreMoveIt) {
   const ScratchFolder folder;
   const FieldPtr field =
-      makeField("mesh", {{"file", InputFile{folder.write("c.obj", bench::cubeAsObj(1)), {}}},
+      makeField("mesh", {{"file", InputFile{folder.write("c.obj", examples::cubeAsObj(1)), {}}},
                          {"scale", 3.0},
                          {"center", Vector{1e7, 0, 0}},
                          {"falloff", 2.0}});
@@ -200,7 +200,7 @@ std::string complaintAbout(const std::string& content) {
 }
 
 TEST(Mesh, RefusesBadFilesWithLineAndSentence) {
-  const std::string cube = bench::cubeAsObj(1.0), ply = tetrahedronAsPly(false),
+  const std::string cube = examples::cubeAsObj(1.0), ply = tetrahedronAsPly(false),
                     bytes = tetrahedronAsPly(true);
   const auto with = [](std::string text, const std::string& from, const std::string& to) {
     EXPECT_NE(text.find(from), std::string::npos) << from;
@@ -250,7 +250,7 @@ FieldPtr weather(const std::string& path, std::map<std::string, Value, std::less
 TEST(WeatherMap, ReadsTexelsWhereTheMapLies) {
   const ScratchFolder folder;
   const std::string path = folder.file("w.exr");
-  const Picture picture = bench::weatherPicture();
+  const Picture picture = examples::weatherPicture();
   writeExr(path, picture);
   const FieldPtr up = weather(path), upY = weather(path, {}, 1);
   int clouds = 0;

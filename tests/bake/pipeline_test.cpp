@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "bench/sample_files.h"
+#include "bake/field_examples.h"
 #include "tests/scratch_folder.h"
 
 namespace nephele::test {

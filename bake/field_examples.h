@@ -1,5 +1,6 @@
-// Small files for rows that need one: a cube as OBJ, a weather map as EXR. For benchmarks and tests; depends
-// on base alone.
+// An example of every row: its defaults, with shapes and noise for child fields and small files (a cube as
+// OBJ, a weather map as EXR) where it needs one. For the docs page, benchmarks and tests. Depends on the
+// table and base.
 #pragma once
 
 #include <stdlib.h>
@@ -10,9 +11,10 @@
 #include <string>
 #include <string_view>
 
+#include "bake/fields/table.h"
 #include "base/picture.h"
 
-namespace nephele::bench {
+namespace nephele::examples {
 
 /// A folder that goes when the program ends.
 class SampleFolder {
@@ -77,4 +79,30 @@ inline std::string sampleFile(std::string_view row) {
   return path;
 }
 
-}  // namespace nephele::bench
+/// The row at its defaults. Child fields are two balls side by side for lists; for single ones fBm where the
+/// parameter is called b or t, and a soft ball elsewhere.
+inline FieldPtr exampleField(const std::string& name, const BuildContext& context) {
+  const auto ball = [&](double x) {
+    const FieldRow* const sphere = findField("sphere");
+    return sphere->build(
+        Arguments({{"center", std::array<double, 3>{x, 0, 0}}, {"radius", 0.7}, {"falloff", 0.35}}), context);
+  };
+  const FieldRow* const row = findField(name);
+  NEPHELE_CHECK_EQ(row != nullptr ? name : std::string("no such field"), name);
+  std::map<std::string, Value, std::less<>> values;
+  for (const Parameter& parameter : row->parameters) {
+    if (parameter.fallback)
+      values.emplace(parameter.name, *parameter.fallback);
+    else if (parameter.type == ParameterType::file)
+      values.emplace(parameter.name, InputFile{sampleFile(name), {}});
+    else if (parameter.type == ParameterType::fields)
+      values.emplace(parameter.name, std::vector<FieldPtr>{ball(-0.4), ball(0.4)});
+    else
+      values.emplace(parameter.name, parameter.name == "b" || parameter.name == "t"
+                                         ? exampleField("fbm", context)
+                                         : ball(0.0));
+  }
+  return row->build(Arguments(std::move(values)), context);
+}
+
+}  // namespace nephele::examples
