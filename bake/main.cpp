@@ -53,10 +53,12 @@ int bake(Command command) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   command.threads > 0 ? size_t(command.threads) : size_t(cores));
   const Pipeline pipeline = loadPipeline(command.pipeline);
+  if (!command.report.empty() && command.report != "-") requireWritable(command.report);
   if (command.dryRun) {
     for (const BakeJob& job : selectJobs(pipeline, command.options)) std::cout << job.file << '\n';
     return kExitDone;
   }
+  command.options.describeSkipped = !command.report.empty();
   const std::string report = reportAsJson(bakeAll(pipeline, command.options));
   if (command.report == "-")
     std::cout << report;
@@ -141,7 +143,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitInput;
+    // --help and --version come this way too.
+    if (error.get_exit_code() == 0) return app.exit(error);
+    throw InputError({}, error.what(), "try nephele-bake --help");
   }
   if (infoCommand->parsed()) return info(command);
   if (nodesCommand->parsed()) return nodes(command);

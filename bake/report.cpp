@@ -13,25 +13,23 @@ std::string reportAsJson(const std::vector<BakeRecord>& records) {
     entry["frame"] = record.frame ? Json(*record.frame) : Json(nullptr);
     entry["recipe_hash"] = record.recipeHash;
     entry["skipped"] = record.skipped;
-    if (!record.skipped) {
-      entry["seconds"] = {
-          {"fill", record.secondsFill}, {"hash", record.secondsHash}, {"write", record.secondsWrite}};
-      entry["voxels_active"] = record.voxelsActive;
-      entry["voxels_evaluated"] = record.voxelsEvaluated;
-      entry["grid_bytes"] = record.gridBytes;
-      entry["bytes"] = record.bytes;
-      entry["peak_bytes"] = record.peakBytes;
-      entry["content_hash"] = record.contentHash;
-      entry["maximum"] = record.maximum;
-      entry["mass"] = {{"stored", record.mass}};
-      Json notes = Json::array();
-      for (const BandLimitNote& note : record.bandLimit)
-        notes.push_back({{"field", note.field},
-                         {"octave", note.octave},
-                         {"cell_voxels", note.cellVoxels},
-                         {"weight", note.weight}});
-      entry["band_limit"] = std::move(notes);
-    }
+    entry["seconds"] = {
+        {"fill", record.secondsFill}, {"hash", record.secondsHash}, {"write", record.secondsWrite}};
+    entry["voxels_active"] = record.voxelsActive;
+    entry["voxels_evaluated"] = record.voxelsEvaluated;
+    entry["grid_bytes"] = record.gridBytes;
+    entry["bytes"] = record.bytes;
+    entry["peak_bytes"] = record.peakBytes;
+    entry["content_hash"] = record.contentHash;
+    if (!record.skipped) entry["maximum"] = record.maximum;
+    entry["mass"] = {{"stored", record.mass}};
+    Json notes = Json::array();
+    for (const BandLimitNote& note : record.bandLimit)
+      notes.push_back({{"field", note.field},
+                       {"octave", note.octave},
+                       {"cell_voxels", note.cellVoxels},
+                       {"weight", note.weight}});
+    entry["band_limit"] = std::move(notes);
     assets.push_back(std::move(entry));
   }
   return Json{{"assets", std::move(assets)}}.dump(2) + "\n";

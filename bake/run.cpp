@@ -14,6 +14,7 @@
 #include "bake/voxelize.h"
 #include "base/files.h"
 #include "base/progress.h"
+#include "volume/info.h"
 #include "volume/vdb_header.h"
 
 namespace nephele {
@@ -63,6 +64,20 @@ Provenance provenanceOf(const Pipeline& pipeline, const BakeJob& job, const std:
     provenance.g = pipeline.scene->medium->g;
   }
   return provenance;
+}
+
+/// Fills a record from the file itself.
+void describe(const std::string& file, BakeRecord& record) {
+  const FileInfo info = inspectFile(file);
+  record.bytes = info.fileBytes;
+  for (const GridInfo& grid : info.grids) {
+    record.voxelsActive += grid.activeVoxels;
+    record.gridBytes += grid.bytes;
+    if (grid.name == "density") record.contentHash = grid.contentHash;
+  }
+  if (const auto mass = info.metadata.find("mass"); mass != info.metadata.end())
+    record.mass = std::stod(mass->second);
+  record.peakBytes = peakBytes();
 }
 
 Voxelized fill(const Field& field, const Asset& asset, const std::string& label, bool quiet) {
@@ -183,10 +198,12 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
   for (const BakeJob& job : jobs) {
     const std::string hash = recipeHash(pipeline, *job.asset, job.time());
     BakeRecord record;
-    if (!options.force && isUpToDate(job, hash))
+    if (!options.force && isUpToDate(job, hash)) {
       record.skipped = true;
-    else
+      if (options.describeSkipped) describe(job.file, record);
+    } else {
       record = bakeOne(pipeline, job, hash, options.quiet);
+    }
     record.name = job.asset->name;
     record.file = job.file;
     record.frame = job.frame;

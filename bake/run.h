@@ -21,8 +21,9 @@ struct BakeOptions {
   std::vector<std::string> only;     // asset names; empty: all
   std::optional<FrameRange> frames;  // of what the recipe asks for; nullopt: all
   Shard shard;
-  bool force = false;  // also what is up to date
-  bool quiet = false;  // no progress, no sentences about files
+  bool force = false;            // also what is up to date
+  bool describeSkipped = false;  // read what is up to date, so that its record is whole
+  bool quiet = false;            // no progress, no sentences about files
 };
 
 /// One file to be.
@@ -35,7 +36,7 @@ struct BakeJob {
   double time() const { return frame ? *frame / asset->fps : 0.0; }
 };
 
-/// What one file cost and holds. Files that were up to date have only the first five and `skipped`.
+/// What one file cost and holds. Files that were up to date cost nothing.
 struct BakeRecord {
   std::string name;
   std::string file;

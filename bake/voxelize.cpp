@@ -209,7 +209,9 @@ Voxelized voxelize(const Field& field, const VoxelizeSettings& settings, const L
 std::string contentHashOf(const Voxelized& voxelized) { return contentHash(*voxelized.grid->grid); }
 
 uint64_t writeDensity(const std::string& path, const Voxelized& voxelized, const Provenance& provenance) {
-  return writeVdb(path, {voxelized.grid->grid}, provenance);
+  Provenance complete = provenance;
+  complete.mass = voxelized.mass;
+  return writeVdb(path, {voxelized.grid->grid}, complete);
 }
 
 }  // namespace nephele

@@ -76,7 +76,8 @@ int runGuarded(const std::function<int()>& body);
                             const std::string& right);
 
 template <class L, class R>
-[[noreturn]] void failCheckValues(const char* file, int line, const char* text, const L& left, const R& right) {
+[[noreturn]] void failCheckValues(const char* file, int line, const char* text, const L& left,
+                                  const R& right) {
   std::ostringstream l, r;
   l << left;
   r << right;
@@ -85,11 +86,11 @@ template <class L, class R>
 
 }  // namespace nephele
 
-#define NEPHELE_CHECK_OP(op, left, right)                                                            \
-  do {                                                                                               \
-    const auto& nepheleLeft = (left);                                                                \
-    const auto& nepheleRight = (right);                                                              \
-    if (!(nepheleLeft op nepheleRight))                                                              \
+#define NEPHELE_CHECK_OP(op, left, right)                                                                  \
+  do {                                                                                                     \
+    const auto& nepheleLeft = (left);                                                                      \
+    const auto& nepheleRight = (right);                                                                    \
+    if (!(nepheleLeft op nepheleRight))                                                                    \
       ::nephele::failCheckValues(__FILE__, __LINE__, #left " " #op " " #right, nepheleLeft, nepheleRight); \
   } while (false)
 #define NEPHELE_CHECK_EQ(left, right) NEPHELE_CHECK_OP(==, left, right)

@@ -93,6 +93,15 @@ void writeWhole(const std::string& path, const std::function<void(const std::str
   if (folderFile.number >= 0) ::fsync(folderFile.number);
 }
 
+void requireWritable(const std::string& path) {
+  const std::string place = folderOf(path);
+  std::error_code error;
+  if (!std::filesystem::is_directory(place, error))
+    throw WorldError("cannot write '" + path + "': there is no folder '" + place + "'");
+  if (::access(place.c_str(), W_OK | X_OK) != 0)
+    throw WorldError("cannot write '" + path + "': " + reasonOf(errno));
+}
+
 int removeLeftovers(const std::string& folder) {
   int removed = 0;
   std::error_code error;

@@ -7,9 +7,13 @@
 namespace nephele {
 
 /// Calls `write` with a temporary path in the folder of `path` (named `.NAME.PID.partial`), flushes it to the
-/// disk, then renames it to `path`. Where `write` throws, the temporary file is removed and the exception goes on.
-/// Throws WorldError where the folder cannot be written.
+/// disk, then renames it to `path`. Where `write` throws, the temporary file is removed and the exception
+/// goes on. Throws WorldError where the folder cannot be written.
 void writeWhole(const std::string& path, const std::function<void(const std::string& temporary)>& write);
+
+/// Throws WorldError where no file can be made in the folder of `path`: asked before long work whose result
+/// goes there.
+void requireWritable(const std::string& path);
 
 /// Removes `.*.partial` files in `folder` whose writing process is no longer alive. Returns how many.
 int removeLeftovers(const std::string& folder);

@@ -19,7 +19,8 @@ class Hasher {
   void bytes(const void* data, size_t sizeBytes);
   /// The text's length, then the text, so that ("ab", "c") and ("a", "bc") differ.
   void text(std::string_view text);
-  /// A trivially copyable value without padding, as it lies in memory (little-endian on all supported machines).
+  /// A trivially copyable value without padding, as it lies in memory (little-endian on all supported
+  /// machines).
   template <class T>
   void value(const T& value) {
     bytes(&value, sizeof value);

@@ -25,7 +25,8 @@ struct Picture {
 /// Writes all planes as float32 channels, ZIP compressed, whole or not at all. Throws WorldError.
 void writeExr(const std::string& path, const Picture& picture);
 
-/// Reads every channel as float32, in alphabetical order of names. A missing file or one that is no EXR is an InputError.
+/// Reads every channel as float32, in alphabetical order of names. A missing file or one that is no EXR is an
+/// InputError.
 Picture readExr(const std::string& path);
 
 /// Colours behind a picture for people to look at (never light): linear Rec.709 at the lower and upper edge.
@@ -34,12 +35,12 @@ struct Backdrop {
   std::array<float, 3> top{0.0f, 0.0f, 0.0f};
 };
 
-/// The project's one tone curve: y = 1 − e^(−x · 2^ev) per channel, then the sRGB transfer function; result in
-/// 0…255, rounded to nearest. x below 0 or NaN is a WorldError of the caller's making and is checked.
+/// The project's one tone curve: y = 1 − e^(−x · 2^ev) per channel, then the sRGB transfer function; result
+/// in 0…255, rounded to nearest. x below 0 or NaN is a WorldError of the caller's making and is checked.
 std::array<unsigned char, 3> toneMap(const std::array<float, 3>& linear, float exposureEv);
 
-/// Writes R, G, B over the backdrop (weight 1 − A, mixed linearly by row) through the tone curve, opaque, whole
-/// or not at all. Throws WorldError.
+/// Writes R, G, B over the backdrop (weight 1 − A, mixed linearly by row) through the tone curve, opaque,
+/// whole or not at all. Throws WorldError.
 void writePng(const std::string& path, const Picture& picture, float exposureEv, const Backdrop& backdrop);
 
 }  // namespace nephele

@@ -9,8 +9,8 @@
 
 namespace nephele {
 
-/// One bar for one job of `total` units. advance() may be called from any thread; it draws at most ten times a
-/// second. The destructor clears the line.
+/// One bar for one job of `total` units. advance() may be called from any thread; it draws at most ten times
+/// a second. The destructor clears the line.
 class Progress {
  public:
   Progress(std::string label, uint64_t total, bool quiet);

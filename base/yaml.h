@@ -31,10 +31,10 @@ class Node {
  public:
   Kind kind = Kind::null;
   SourceLocation where;
-  std::string scalar;            // kind == scalar
-  bool quoted = false;           // a quoted scalar is text even where it looks like a number
-  std::vector<NodePtr> items;    // kind == sequence
-  std::vector<Entry> entries;    // kind == map, in file order, keys unique
+  std::string scalar;          // kind == scalar
+  bool quoted = false;         // a quoted scalar is text even where it looks like a number
+  std::vector<NodePtr> items;  // kind == sequence
+  std::vector<Entry> entries;  // kind == map, in file order, keys unique
 };
 
 /// "a number", "text", "a list", "a map" or "nothing": for sentences.
@@ -53,8 +53,10 @@ bool contains(const Range& range, double value);
 
 /// Typed readings of one node. Each adds a complaint and returns nullopt where the node is of another type,
 /// is not finite, or lies outside the range; `what` names the value in sentences ("'fov' (degrees)").
-std::optional<double> readNumber(const Node& node, const std::string& what, const Range& range, Diagnostics& out);
-std::optional<long long> readInteger(const Node& node, const std::string& what, const Range& range, Diagnostics& out);
+std::optional<double> readNumber(const Node& node, const std::string& what, const Range& range,
+                                 Diagnostics& out);
+std::optional<long long> readInteger(const Node& node, const std::string& what, const Range& range,
+                                     Diagnostics& out);
 std::optional<bool> readBoolean(const Node& node, const std::string& what, Diagnostics& out);
 std::optional<std::string> readText(const Node& node, const std::string& what, Diagnostics& out);
 std::optional<std::vector<double>> readNumbers(const Node& node, const std::string& what, size_t count,
@@ -79,9 +81,11 @@ class MapReader {
   std::string text(std::string_view key, std::string fallback);
   /// One of `choices`; anything else is refused with the list.
   std::string choice(std::string_view key, std::string fallback, const std::vector<std::string>& choices);
-  std::array<double, 3> vector3(std::string_view key, std::array<double, 3> fallback, const Range& range = kAny);
+  std::array<double, 3> vector3(std::string_view key, std::array<double, 3> fallback,
+                                const Range& range = kAny);
   /// Three numbers, or one number that stands for all three.
-  std::array<double, 3> numberOrRgb(std::string_view key, std::array<double, 3> fallback, const Range& range = kAny);
+  std::array<double, 3> numberOrRgb(std::string_view key, std::array<double, 3> fallback,
+                                    const Range& range = kAny);
 
   /// Refuses keys that nobody asked for. Call once, last.
   void finish();

@@ -1,6 +1,7 @@
 // nephele-preview: reads the command line, calls what it asks for, returns the exit code. Depends on preview
 // and CLI11.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 
 #include "base/version.h"
@@ -66,8 +67,12 @@ void addRenderOptions(CLI::App& app, Arguments& a) {
   app.add_option("--frames", a.frames, "Render frames A-B, both included, to OUT_####");
 }
 
-int renderOrShow(Arguments& a, bool stepGiven, bool exposureGiven) {
+int renderOrShow(Arguments& a, bool renderGiven, bool stepGiven, bool exposureGiven) {
   if (a.render.file.empty()) throw InputError({}, "no file is given", "try nephele-preview --help");
+  // A range lets what is not a number through.
+  if (std::isnan(a.step)) throw InputError({}, "--step must be a number of voxels");
+  if (std::isnan(a.exposure)) throw InputError({}, "--exposure must be a number of EV");
+  if (renderGiven && a.render.out.empty()) throw InputError({}, "--render needs OUT.exr or OUT.png");
   if (!a.error.empty()) throw InputError({}, "--error is not built yet");
   if (stepGiven) a.render.stepVoxels = a.step;
   if (exposureGiven) a.render.exposureEv = a.exposure;
@@ -99,7 +104,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitInput;
+    // --help and --version come this way too.
+    if (error.get_exit_code() == 0) return app.exit(error);
+    throw InputError({}, error.what(), "try nephele-preview --help");
   }
   if (chart->parsed()) throw InputError({}, "chart is not built yet");
   if (compare->parsed()) {
@@ -107,7 +114,7 @@ int run(int argc, char** argv) {
     if (!a.tolerance.empty()) tolerance = parseTolerance(a.tolerance);
     return compareCommand(a.picture, a.reference, tolerance, a.json);
   }
-  return renderOrShow(a, app.count("--step") > 0, app.count("--exposure") > 0);
+  return renderOrShow(a, app.count("--render") > 0, app.count("--step") > 0, app.count("--exposure") > 0);
 }
 
 }  // namespace

@@ -232,6 +232,10 @@ double exposureFor(const RenderOptions& options, const Picture& picture) {
 
 int renderCommand(const RenderOptions& options) {
   checkOptions(options);
+  requireWritable(options.out);
+  if (!options.stats.empty()) requireWritable(options.stats);
+  const std::string folder = std::filesystem::path(options.out).parent_path().string();
+  removeLeftovers(folder.empty() ? "." : folder);
   Sequence sequence(options);
   if (options.frames) {
     for (int frame = options.frames->first; frame <= options.frames->second; ++frame)

@@ -275,9 +275,10 @@ std::string writeScene(const Scene& scene) {
   text += "# Behind window and PNG only, linear Rec.709: no light.\nbackground: { bottom: " +
           listOf(scene.backdrop.bottom) + ", top: " + listOf(scene.backdrop.top) + " }\n";
   text += "look: " + nameOf(scene.look) + "\n";
-  text += "# Steps in voxels; each step towards a light is shadow_growth times the one before.\nmarch: { step: " + shortest(scene.march.stepVoxels) +
-          ", shadow_step: " + shortest(scene.march.shadowStepVoxels) +
-          ", shadow_growth: " + shortest(scene.march.shadowGrowth) + " }\n";
+  text +=
+      "# Steps in voxels; each step towards a light is shadow_growth times the one before.\nmarch: { step: " +
+      shortest(scene.march.stepVoxels) + ", shadow_step: " + shortest(scene.march.shadowStepVoxels) +
+      ", shadow_growth: " + shortest(scene.march.shadowGrowth) + " }\n";
   return text;
 }
 

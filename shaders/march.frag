@@ -13,7 +13,7 @@ layout(location = 2) uniform vec3 texelSize;  // 1 / the atlas's size
 
 layout(location = 0) out vec4 outRadiance;       // radiance, alpha
 layout(location = 1) out vec4 outTransmittance;  // transmittance, 1
-layout(location = 2) out vec4 outDepth;          // weighted depth, its weight, densities read, 0
+layout(location = 2) out vec4 outDepth;          // weighted depth, its weight, densities read, rays cut short
 
 const int kBrickSamples = 9;
 
@@ -61,5 +61,5 @@ void main() {
   vec3 transmittance = exp(-result.opticalDepth);
   outRadiance = vec4(result.radiance, 1.0 - (transmittance.r + transmittance.g + transmittance.b) / 3.0);
   outTransmittance = vec4(transmittance, 1.0);
-  outDepth = vec4(result.depth, result.depthWeight, result.samples, 0.0);
+  outDepth = vec4(result.depth, result.depthWeight, result.cost.x, result.cost.y);
 }

@@ -19,6 +19,7 @@ struct Provenance {
   std::array<double, 3> sigmaS{};
   std::array<double, 3> sigmaA{};
   double g = 0.0;
+  std::optional<double> mass;  // Σ of stored densities · voxel volume, density units · world units³
 };
 
 /// "Nephele 0.1.0"; never begins with "Houdini" (Blender would turn the file).

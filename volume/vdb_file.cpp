@@ -20,6 +20,7 @@ openvdb::MetaMap metadataOf(const Provenance& provenance) {
     metadata.insertMeta("recipe_hash", openvdb::StringMetadata(provenance.recipeHash));
   metadata.insertMeta("seed", openvdb::Int64Metadata(provenance.seed));
   if (provenance.frame) metadata.insertMeta("frame", openvdb::Int32Metadata(*provenance.frame));
+  if (provenance.mass) metadata.insertMeta("mass", openvdb::DoubleMetadata(*provenance.mass));
   if (provenance.hasMedium) {
     const auto vector = [](const std::array<double, 3>& a) { return openvdb::Vec3d(a[0], a[1], a[2]); };
     metadata.insertMeta("sigma_s", openvdb::Vec3DMetadata(vector(provenance.sigmaS)));
@@ -39,6 +40,8 @@ void readGuarded(const std::string& path, const Body& body) {
     throw InputError({path}, std::string("is damaged or of a kind that is not read: ") + error.what());
   } catch (const std::length_error&) {
     throw InputError({path}, "is damaged: it asks for more memory than there can be");
+  } catch (const std::bad_alloc&) {
+    throw InputError({path}, "is damaged, or larger than the memory: reading it asks for more than there is");
   } catch (const std::ios_base::failure& error) {
     throw InputError({path}, std::string("is damaged: ") + error.what());
   }

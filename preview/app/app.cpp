@@ -153,9 +153,13 @@ class App {
       name << "nephele_" << std::setw(kDigits) << std::setfill('0') << number << ".png";
       path = std::filesystem::path(options_.screenshotFolder) / name.str();
     }
-    writePicture(path.string(), viewer_->read(), state_.view.scene, state_.exposureEv, false);
-    state_.notice = "wrote " + path.filename().string();
-    std::cerr << "wrote " << path.string() << '\n';
+    try {
+      writePicture(path.string(), viewer_->read(), state_.view.scene, state_.exposureEv, false);
+      state_.notice = "wrote " + path.filename().string();
+    } catch (const WorldError& error) {  // a folder that cannot be written must not end the session
+      state_.notice = error.what();
+    }
+    std::cerr << state_.notice << '\n';
   }
 
   AppOptions options_;

@@ -95,6 +95,9 @@ void statsText(const PanelState& state, const ViewerStats& stats) {
   ImGui::Text("%u of %u samples   %.0f densities a pixel", stats.samples, stats.samplesWanted,
               stats.densitySamplesPerPixel);
   ImGui::Text("%.1f MiB on the GPU", static_cast<double>(stats.gpuBytes) / kMebibyte);
+  if (stats.raysCutShort > 0.0)
+    ImGui::TextWrapped("the driver cut %.0f rays short and the picture is wrong: take longer steps",
+                       stats.raysCutShort);
   if (!state.notice.empty()) ImGui::TextWrapped("%s", state.notice.c_str());
 }
 

@@ -99,7 +99,9 @@ bool Viewer::work(double seconds) {
   const unsigned whole = accumulator_->wholeSamples();
   if (whole > 0 && stats_.densitySamplesPerPixel == 0.0) {
     const double drawn = static_cast<double>(accumulator_->pixelsDone());
-    stats_.densitySamplesPerPixel = full_->read().densitySamples / drawn;
+    const FilmPicture soFar = full_->read();
+    stats_.densitySamplesPerPixel = soFar.densitySamples / drawn;
+    stats_.raysCutShort = soFar.raysCutShort;
     stats_.sampleMilliseconds = fullSeconds_ * 1e3 * width_ * height_ / drawn;
   }
   return more;

@@ -11,8 +11,9 @@ namespace nephele {
 
 /// Head-up figures.
 struct ViewerStats {
-  double quickMilliseconds = 0.0;       // the last coarse frame
-  double sampleMilliseconds = 0.0;      // one whole sample of every pixel at rest
+  double quickMilliseconds = 0.0;   // the last coarse frame
+  double sampleMilliseconds = 0.0;  // one whole sample of every pixel at rest
+  double raysCutShort = 0.0;  // by the driver, of the samples above: the picture is wrong where it is not 0
   double densitySamplesPerPixel = 0.0;  // densities read for one sample of every pixel; 0 until one is whole
   unsigned samples = 0;                 // accumulated at rest
   unsigned samplesWanted = 0;

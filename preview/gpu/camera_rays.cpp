@@ -119,6 +119,10 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   p.sigmaT = row(sigmaS + vectorOf(view.medium.sigmaA), view.medium.g);
   p.sigmaS = row(sigmaS, scene.march.stepVoxels);
   p.octaves = row(dvec3(scene.octaves.a, scene.octaves.b, scene.octaves.c), 0.0);
+  // Products with steps and coefficients must stay floats, and columns below the march's own infinity.
+  constexpr double kLargestDensity = 1e15;
+  if (bricks.maximum > kLargestDensity)
+    throw InputError({bricks.path}, "holds densities above 1e15, more than the march computes with");
   NEPHELE_CHECK_GT(scene.march.shadowStepVoxels, 0.0);
   NEPHELE_CHECK_LE(1.0, scene.march.shadowGrowth);  // less would never arrive
   p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, 0.0), 0.0);

@@ -97,6 +97,7 @@ FilmPicture Film::read() const {
     const float* texel = texels.data() + i * kChannels;
     picture.planes.back()[i] = texel[1] > 0.0f ? texel[0] / texel[1] : 0.0f;
     result.densitySamples += double{texel[2]};
+    result.raysCutShort += double{texel[3]};
   }
   return result;
 }

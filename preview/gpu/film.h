@@ -15,10 +15,11 @@ namespace nephele {
 struct FilmPicture {
   Picture picture;
   double densitySamples = 0.0;  // densities read, summed over all pixels and samples
+  double raysCutShort = 0.0;  // samples whose loops the driver ended before their time: the picture is wrong
 };
 
 /// Three RGBA32F targets of one size: radiance and alpha; transmittance and the number of samples; weighted
-/// depth, its weight, densities read. Row 0 is the picture's top.
+/// depth, its weight, densities read, rays cut short. Row 0 is the picture's top.
 class Film {
  public:
   /// Sums start at 0. Throws InputError where a side is over the driver's limit, WorldError where memory is

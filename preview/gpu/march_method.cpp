@@ -2,6 +2,7 @@
 #include "preview/gpu/march_method.h"
 
 #include <chrono>
+#include <cstdio>
 #include <optional>
 
 #include "base/progress.h"
@@ -18,6 +19,16 @@ constexpr double kProgressSeconds = 0.1;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Some drivers end a shader's loops without a word: llvmpipe after 65535 iterations a pixel.
+void refuseCutRays(const FilmPicture& result) {
+  if (result.raysCutShort == 0.0) return;
+  char count[32];
+  std::snprintf(count, sizeof count, "%.0f", result.raysCutShort);
+  throw WorldError(std::string("the driver (") + glRenderer() + ") cut " + count +
+                   " rays short, so the picture would be wrong; take longer steps (march: step, shadow_step, "
+                   "shadow_growth)");
 }
 
 class MarchMethod : public Method {
@@ -53,6 +64,7 @@ class MarchMethod : public Method {
       }
     }
     FilmPicture result = film.read();
+    refuseCutRays(result);
     cost.milliseconds = secondsSince(start) * 1e3;
     cost.densitySamplesPerPixel =
         result.densitySamples / (static_cast<double>(request.width) * request.height);

@@ -53,8 +53,7 @@ std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const MarchParame
         const auto result = march.marchRay(at, random, number);
         TwinPixel& pixel =
             pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
-        pixel = {result.radiance, exp(-result.opticalDepth), result.depth, result.depthWeight,
-                 result.samples};
+        pixel = {result.radiance, exp(-result.opticalDepth), result.depth, result.depthWeight, result.cost.x};
       }
     }
   });

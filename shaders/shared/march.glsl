@@ -15,7 +15,7 @@ struct MarchResult {
   vec3 opticalDepth;   // of the whole ray, or up to where it was given up, per channel
   float depth;         // world distance from the camera, weighted by what each step takes from the view; 0 without medium
   float depthWeight;   // that weight's sum: 1 − transmittance, mean over channels
-  float samples;       // densities read: view, shadow and sky
+  vec2 cost;           // x: densities read: view, shadow and sky. y: 1 where a driver ended a loop before its time
 };
 
 // Density at an index-space position. Where its brick is empty, `toExit` becomes the number of `stride`s from there to the
@@ -44,7 +44,7 @@ NPH_FN float densityAndExit(vec3 position, vec3 stride, NPH_OUT(float) toExit) {
 // steps that grow with the way gone: what lies far from a point shades its neighbours alike. Empty bricks are passed without
 // reading them, on the same steps. Gives up, with what it has, once it exceeds `enough`.
 NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enough, float start,
-                           NPH_INOUT(float) samples) {
+                           NPH_INOUT(vec2) cost) {
   float tNear = 0.0f;
   float tFar = 0.0f;
   if (!intersectBox(origin, direction, vec3(params.boxMin), vec3(params.boxMax), tNear, tFar)) return 0.0f;
@@ -58,7 +58,7 @@ NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enoug
     float middle = t + start * ds;
     float toExit = 0.0f;
     column += densityAndExit(origin + middle * direction, direction, toExit) * ds;
-    samples += 1.0f;
+    cost.x += 1.0f;
     if (column > enough) break;
     t += ds;
     dt *= growth;
@@ -69,6 +69,7 @@ NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enoug
       dt *= growth;
     }
   }
+  if (t < tFar && !(column > enough)) cost.y = 1.0f;
   return column;
 }
 
@@ -142,11 +143,12 @@ NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
 // Source function at a point: Σ over lights and the sky, per unit density, before σ_s. `place` counts the points lit along
 // the ray, `number` the picture's samples.
 NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
-                         NPH_INOUT(float) samples) {
+                         NPH_INOUT(vec2) cost) {
   vec3 sum = vec3(0.0f);
   bool sky = max(params.environment.x, max(params.environment.y, params.environment.z)) > 0.0f;
   int count = params.counts.x + (sky ? 1 : 0);
-  for (int i = 0; i < count; ++i) {
+  int i = 0;
+  for (; i < count; ++i) {
     float start = params.counts.w != 0 ? nextUniform(random) : 0.5f;
     Lighting l;
     if (i < params.counts.x) {
@@ -154,9 +156,10 @@ NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint
     } else {
       l = lightingFromSky(ray, place, number);
     }
-    float column = columnDensity(position, l.toLightIndex, l.reach, enough, start, samples);
+    float column = columnDensity(position, l.toLightIndex, l.reach, enough, start, cost);
     sum += l.irradiance * scatteredByOrders(l.toLight, ray, column);
   }
+  if (i < count) cost.y = 1.0f;
   return sum;
 }
 
@@ -167,7 +170,7 @@ NPH_FN MarchResult marchRay(vec2 at, uint random, uint number) {
   result.opticalDepth = vec3(0.0f);
   result.depth = 0.0f;
   result.depthWeight = 0.0f;
-  result.samples = 0.0f;
+  result.cost = vec2(0.0f);
   vec3 rayLong = vec3(params.rayCorner) + at.x * vec3(params.rayDx) + at.y * vec3(params.rayDy);
   float stretch = length(rayLong);
   vec3 ray = rayLong / stretch;
@@ -198,7 +201,7 @@ NPH_FN MarchResult marchRay(vec2 at, uint random, uint number) {
       float rho = densityAndExit(origin + middle * direction, stride, toExit);
       // Stop a thousandth of a step short: an extra sample in the empty brick costs little, a missed one would be wrong.
       steps = max(1, int(min(floor(toExit - 1e-3f), 1e6f)));
-      result.samples += 1.0f;
+      result.cost.x += 1.0f;
       if (rho > 0.0f) {
         vec3 x = (rho * ds) * vec3(params.sigmaT);
         vec3 before = exp(-result.opticalDepth);
@@ -220,7 +223,7 @@ NPH_FN MarchResult marchRay(vec2 at, uint random, uint number) {
       // Each place has numbers of its own, so that more or fewer drawn at another do not change them.
       uint placeRandom = hashBits(random ^ lit);
       vec3 position = origin + (place / mean) * direction;
-      vec3 source = vec3(params.sigmaS) * inScattering(position, ray, enough, lit, number, placeRandom, result.samples);
+      vec3 source = vec3(params.sigmaS) * inScattering(position, ray, enough, lit, number, placeRandom, result.cost);
       lit += 1u;
       result.radiance += source * share;
       share = vec3(0.0f);
@@ -229,5 +232,6 @@ NPH_FN MarchResult marchRay(vec2 at, uint random, uint number) {
     }
     if (mean <= 0.0f || waitingTaken <= 0.0f) waitingSteps = 0;
   }
+  if (!last) result.cost.y = 1.0f;
   return result;
 }

@@ -67,7 +67,8 @@ BAKE = [
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "constant: { value: 1 }", "pipeline.yaml:", "error:"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "multiply: [ sphere, 1e6 ]", "pipeline.yaml:", "error:", "65504"),
     # command lines
-    says("bake --no-such-option", 2, "--no-such-option"),
+    says("bake --no-such-option", 2, "error: ", "--no-such-option"),
+    says("bake pipeline.yaml --report nowhere/r.json", 1, "there is no folder"),
     says("bake pipeline.yaml --threads many", 2, "--threads", recipe=GOOD_RECIPE),
     says("bake pipeline.yaml --threads -1", 2, "--threads"),
     says("bake pipeline.yaml --only bell", 2, "bell", "did you mean 'ball'?"),

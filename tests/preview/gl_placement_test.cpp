@@ -128,5 +128,31 @@ TEST(GlPlacement, HardwareFilterIsNearTheExactOne) {
   EXPECT_LT(worst, 0.02);
 }
 
+TEST(LongRays, AreRightOrSaidToBeCutShort) {
+  needContext();
+  // A hundredth of a voxel on the way and towards the sun: 6400 steps, each with thousands more. llvmpipe
+  // ends all loops of a pixel after 65535 turns, without a word.
+  const BrickVolume bricks =
+      bricksFromDense(std::vector<float>(64 * 64 * 64, 1.0f), glm::ivec3(64), glm::ivec3(0), glm::dmat4(1.0));
+  ViewedScene view;
+  view.camera.target = glm::dvec3(31.5);
+  view.camera.position = glm::dvec3(31.5, 31.5, 400.0);
+  view.camera.up = glm::dvec3(0.0, 1.0, 0.0);
+  view.medium = {{0.01, 0.01, 0.01}, {0.0, 0.0, 0.0}, 0.0};
+  view.scene.march = {0.01, 0.01, 1.0};
+  MarchPass pass(Filter::exact);
+  pass.setParameters(marchParameters(view, bricks, 2, 2, 0, false));
+  const FilmPicture film = marchOnGpu(pass, bricks, 2, 2, {0.5f, 0.5f}, 0);
+  // 64 voxels at full density: 63 between samples and half a voxel's worth at either end.
+  const double exact = 1.0 - std::exp(-0.01 * 64.0);
+  double worst = 0.0;
+  for (const float alpha : film.picture.planes[3]) worst = std::max(worst, std::abs(double{alpha} - exact));
+  std::printf("long rays: %.0f of 4 cut short, largest error of alpha %.3g\n", film.raysCutShort, worst);
+  EXPECT_TRUE(film.raysCutShort == 4.0 || worst < 2e-3);
+  if (glRenderer().find("llvmpipe") != std::string::npos) {
+    EXPECT_EQ(film.raysCutShort, 4.0);
+  }
+}
+
 }  // namespace
 }  // namespace nephele::testing_gl
