@@ -53,12 +53,15 @@ NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enoug
   float growth = params.shadow.y;
   float column = 0.0f;
   float t = tNear;
+  // Kept apart from the loop's condition, which a compiler may take to be false behind the loop.
+  float arrived = t < tFar ? 0.0f : 1.0f;
   while (t < tFar) {               // false also where t is NaN
     float ds = min(dt, tFar - t);  // the last step ends where the medium does
     float middle = t + start * ds;
     float toExit = 0.0f;
     column += densityAndExit(origin + middle * direction, direction, toExit) * ds;
     cost.x += 1.0f;
+    arrived = column > enough ? 1.0f : 0.0f;
     if (column > enough) break;
     t += ds;
     dt *= growth;
@@ -68,8 +71,9 @@ NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enoug
       t += dt;
       dt *= growth;
     }
+    arrived = t < tFar ? 0.0f : 1.0f;
   }
-  if (t < tFar && !(column > enough)) cost.y = 1.0f;
+  cost.y = max(cost.y, 1.0f - arrived);
   return column;
 }
 
@@ -147,8 +151,8 @@ NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint
   vec3 sum = vec3(0.0f);
   bool sky = max(params.environment.x, max(params.environment.y, params.environment.z)) > 0.0f;
   int count = params.counts.x + (sky ? 1 : 0);
-  int i = 0;
-  for (; i < count; ++i) {
+  int done = 0;
+  for (int i = 0; i < count; ++i) {
     float start = params.counts.w != 0 ? nextUniform(random) : 0.5f;
     Lighting l;
     if (i < params.counts.x) {
@@ -158,8 +162,9 @@ NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint
     }
     float column = columnDensity(position, l.toLightIndex, l.reach, enough, start, cost);
     sum += l.irradiance * scatteredByOrders(l.toLight, ray, column);
+    done += 1;
   }
-  if (i < count) cost.y = 1.0f;
+  if (done < count) cost.y = 1.0f;
   return sum;
 }
 
@@ -189,6 +194,7 @@ NPH_FN MarchResult marchRay(vec2 at, uint random, uint number) {
   int waitingSteps = 0;
   uint lit = 0u;
   bool last = false;
+  float arrived = 0.0f;  // 1 once `last` was seen; see columnDensity
   int steps = 1;
   for (int k = 0; !last; k += steps) {
     float t = tNear + float(k) * dt;
@@ -231,7 +237,8 @@ NPH_FN MarchResult marchRay(vec2 at, uint random, uint number) {
       waitingTaken = 0.0f;
     }
     if (mean <= 0.0f || waitingTaken <= 0.0f) waitingSteps = 0;
+    arrived = last ? 1.0f : 0.0f;
   }
-  if (!last) result.cost.y = 1.0f;
+  result.cost.y = max(result.cost.y, 1.0f - arrived);
   return result;
 }
