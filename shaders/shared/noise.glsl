@@ -46,14 +46,8 @@ NPH_FN int foldCell(int cell, int period) {
   return rest < 0 ? rest + period : rest;
 }
 
-// Gradient noise in [−1, 1]; 0 at lattice points. `period` in cells for all axes, 0 for none [Perlin 1985, 2002].
-NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
-  float corner[8];
-  for (int c = 0; c < 8; ++c) {
-    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
-    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
-    corner[c] = gradientDot(hashGradient(at, seed), f.x - float(o.x), f.y - float(o.y), f.z - float(o.z));
-  }
+// A cell's eight corner values (x fastest, then y, then z) at the place f in it, by the quintic fade.
+NPH_FN float mixCorners(float corner[8], vec3 f) {
   float sx = fadeQuintic(f.x);
   float sy = fadeQuintic(f.y);
   float sz = fadeQuintic(f.z);
@@ -63,7 +57,18 @@ NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
   float x11 = corner[6] + sx * (corner[7] - corner[6]);
   float y0 = x00 + sy * (x10 - x00);
   float y1 = x01 + sy * (x11 - x01);
-  return (y0 + sz * (y1 - y0)) * kPerlinScale;
+  return y0 + sz * (y1 - y0);
+}
+
+// Gradient noise in [−1, 1]; 0 at lattice points. `period` in cells for all axes, 0 for none [Perlin 1985, 2002].
+NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
+  float corner[8];
+  for (int c = 0; c < 8; ++c) {
+    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
+    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    corner[c] = gradientDot(hashGradient(at, seed), f.x - float(o.x), f.y - float(o.y), f.z - float(o.z));
+  }
+  return mixCorners(corner, f) * kPerlinScale;
 }
 
 // Slope of perlinNoise per cell along x, y, z: the derivative of the same polynomial.
@@ -98,16 +103,7 @@ NPH_FN float valueNoise(ivec3 cell, vec3 f, int period, uint seed) {
     // 2^-23: the hash's upper 24 bits become [0, 2).
     corner[c] = float(hashCell(at, seed) >> 8u) * 1.1920929e-7f - 1.0f;
   }
-  float sx = fadeQuintic(f.x);
-  float sy = fadeQuintic(f.y);
-  float sz = fadeQuintic(f.z);
-  float x00 = corner[0] + sx * (corner[1] - corner[0]);
-  float x10 = corner[2] + sx * (corner[3] - corner[2]);
-  float x01 = corner[4] + sx * (corner[5] - corner[4]);
-  float x11 = corner[6] + sx * (corner[7] - corner[6]);
-  float y0 = x00 + sy * (x10 - x00);
-  float y1 = x01 + sy * (x11 - x01);
-  return y0 + sz * (y1 - y0);
+  return mixCorners(corner, f);
 }
 
 // The one feature point of a cell, in [0, 1)³ from its corner: the centre for jitter 0, anywhere for 1. Multiples of 1/2048
