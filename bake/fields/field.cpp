@@ -1,6 +1,7 @@
 // Boxes, and the way from lattice blocks to points that every field has. Depends on field.h alone.
 #include "bake/fields/field.h"
 
+#include <algorithm>
 #include <glm/common.hpp>
 
 namespace nephele {
@@ -21,14 +22,13 @@ Box hull(const Box& a, const Box& b) {
 Box grown(const Box& box, double by) { return {box.low - by, box.high + by}; }
 
 LatticePoints::LatticePoints(const Lattice& lattice) : origin(lattice.origin) {
-  int n = 0;
-  for (int i = 0; i < kBlockEdge; ++i)
-    for (int j = 0; j < kBlockEdge; ++j)
-      for (int k = 0; k < kBlockEdge; ++k, ++n) {
-        x[n] = float(i * lattice.spacing);
-        y[n] = float(j * lattice.spacing);
-        z[n] = float(k * lattice.spacing);
-      }
+  float along[kBlockEdge];
+  for (int n = 0; n < kBlockEdge; ++n) along[n] = float(n * lattice.spacing);
+  for (int row = 0; row < kBlockEdge * kBlockEdge; ++row) {
+    std::fill_n(x + row * kBlockEdge, kBlockEdge, along[row / kBlockEdge]);
+    std::fill_n(y + row * kBlockEdge, kBlockEdge, along[row % kBlockEdge]);
+    std::copy_n(along, kBlockEdge, z + row * kBlockEdge);
+  }
 }
 
 Points LatticePoints::points() const { return {origin, kBlockPoints, x, y, z}; }

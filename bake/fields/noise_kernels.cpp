@@ -6,6 +6,16 @@
 #include "bake/fields/cell_place.h"
 #include "bake/fields/shared_text.h"
 
+#ifndef NEPHELE_NOISE_GRADIENTS
+#define NEPHELE_NOISE_GRADIENTS
+namespace nephele {
+/// The 16 gradients of shared::gradientDot, aligned for the widest vector.
+alignas(64) constexpr float kGradientX[16] = {1, -1, 1, -1, 1, -1, 1, -1, 0, 0, 0, 0, 1, 0, -1, 0};
+alignas(64) constexpr float kGradientY[16] = {1, 1, -1, -1, 0, 0, 0, 0, 1, -1, 1, -1, 1, -1, 1, -1};
+alignas(64) constexpr float kGradientZ[16] = {0, 0, 0, 0, 1, 1, -1, -1, 1, 1, -1, -1, 0, 1, 0, -1};
+}  // namespace nephele
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/fields/noise_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -233,17 +243,8 @@ void addOnLattice(const NoiseOctave& octave, const Lattice& lattice, float* sums
 // 0.
 struct GradientTable {
   hn::Vec<Tag> x, y, z;
-  HWY_INLINE GradientTable() {
-    HWY_ALIGN float gx[16], gy[16], gz[16];
-    for (uint32_t h = 0; h < 16; ++h) {
-      gx[h] = shared::gradientDot(h, 1.0f, 0.0f, 0.0f);
-      gy[h] = shared::gradientDot(h, 0.0f, 1.0f, 0.0f);
-      gz[h] = shared::gradientDot(h, 0.0f, 0.0f, 1.0f);
-    }
-    x = hn::Load(Tag(), gx);
-    y = hn::Load(Tag(), gy);
-    z = hn::Load(Tag(), gz);
-  }
+  HWY_INLINE GradientTable()
+      : x(hn::Load(Tag(), kGradientX)), y(hn::Load(Tag(), kGradientY)), z(hn::Load(Tag(), kGradientZ)) {}
   template <class V, class VU>
   HWY_INLINE V dot(VU hash, V dx, V dy, V dz) const {
     const auto h = hn::IndicesFromVec(Tag(), hn::ShiftRight<28>(hash));
@@ -264,32 +265,56 @@ struct GradientTable {
 };
 #endif
 
-// One vector of points, given as places relative to a first cell whose hashed coordinates are hx, hy, hz.
+// Mixes a cell's corners; dot(x, y, z, dx, dy, dz) is the product at corner (x, y, z), each 0 or 1, for the
+// place relative to it.
+template <class D, class V, class Dot>
+HWY_INLINE V mixCell(D d, V x0, V y0, V z0, const Dot& dot) {
+  const V one = hn::Set(d, 1.0f);
+  const V x1 = hn::Sub(x0, one), y1 = hn::Sub(y0, one), z1 = hn::Sub(z0, one);
+  const V sx = fade(d, x0), sy = fade(d, y0), sz = fade(d, z0);
+  const V low = mix(mix(dot(0, 0, 0, x0, y0, z0), dot(1, 0, 0, x1, y0, z0), sx),
+                    mix(dot(0, 1, 0, x0, y1, z0), dot(1, 1, 0, x1, y1, z0), sx), sy);
+  const V high = mix(mix(dot(0, 0, 1, x0, y0, z1), dot(1, 0, 1, x1, y0, z1), sx),
+                     mix(dot(0, 1, 1, x0, y1, z1), dot(1, 1, 1, x1, y1, z1), sx), sy);
+  return hn::Mul(mix(low, high, sz), hn::Set(d, shared::kPerlinScale));
+}
+
+// One vector of points, given as places relative to a first cell.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V noiseAt(D d, const GradientTable& table, V x, V y, V z, uint32_t cellX, uint32_t cellY,
                      uint32_t cellZ, uint32_t seed) {
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
-  const V one = hn::Set(d, 1.0f);
   const V wx = hn::Floor(x), wy = hn::Floor(y), wz = hn::Floor(z);
+  const V x0 = hn::Sub(x, wx), y0 = hn::Sub(y, wy), z0 = hn::Sub(z, wz);
+  const float ax = hn::GetLane(wx), ay = hn::GetLane(wy), az = hn::GetLane(wz);
+  const auto strays =
+      hn::Or(hn::Or(hn::Ne(wx, hn::Set(d, ax)), hn::Ne(wy, hn::Set(d, ay))), hn::Ne(wz, hn::Set(d, az)));
+  if (hn::AllFalse(d, strays)) {  // all in one cell, as coarse octaves mostly are: its gradients once
+    const uint32_t bx = cellX + uint32_t(int32_t(ax)), by = cellY + uint32_t(int32_t(ay)),
+                   bz = cellZ + uint32_t(int32_t(az));
+    return mixCell(d, x0, y0, z0, [&](uint32_t ox, uint32_t oy, uint32_t oz, V dx, V dy, V dz) HWY_ATTR {
+      const uint32_t h = shared::hashGradient({int32_t(bx + ox), int32_t(by + oy), int32_t(bz + oz)}, seed);
+      return hn::Add(hn::Add(hn::Mul(hn::Set(d, kGradientX[h]), dx), hn::Mul(hn::Set(d, kGradientY[h]), dy)),
+                     hn::Mul(hn::Set(d, kGradientZ[h]), dz));
+    });
+  }
   const auto hashed = [&](V whole, uint32_t cell, uint32_t prime) HWY_ATTR {
     const auto at = hn::Add(hn::BitCast(du, hn::ConvertTo(di, whole)), hn::Set(du, cell));
     return hn::Mul(at, hn::Set(du, prime));
   };
-  const auto hx0 = hashed(wx, cellX, kHashX), hx1 = hn::Add(hx0, hn::Set(du, kHashX));
-  const auto hy0 = hashed(wy, cellY, kHashY), hy1 = hn::Add(hy0, hn::Set(du, kHashY));
-  const auto plainZ = hashed(wz, cellZ, kHashZ), seeds = hn::Set(du, seed);
-  const auto hz0 = hn::Xor(plainZ, seeds), hz1 = hn::Xor(hn::Add(plainZ, hn::Set(du, kHashZ)), seeds);
-  const V x0 = hn::Sub(x, wx), y0 = hn::Sub(y, wy), z0 = hn::Sub(z, wz);
-  const V x1 = hn::Sub(x0, one), y1 = hn::Sub(y0, one), z1 = hn::Sub(z0, one);
-  const V sx = fade(d, x0), sy = fade(d, y0), sz = fade(d, z0);
-  const auto alongX = [&](auto hyz, V dy, V dz) HWY_ATTR {
-    return mix(table.dot(mixHash(du, hn::Xor(hx0, hyz)), x0, dy, dz),
-               table.dot(mixHash(du, hn::Xor(hx1, hyz)), x1, dy, dz), sx);
-  };
-  const V low = mix(alongX(hn::Xor(hy0, hz0), y0, z0), alongX(hn::Xor(hy1, hz0), y1, z0), sy);
-  const V high = mix(alongX(hn::Xor(hy0, hz1), y0, z1), alongX(hn::Xor(hy1, hz1), y1, z1), sy);
-  return hn::Mul(mix(low, high, sz), hn::Set(d, shared::kPerlinScale));
+  using VU = hn::Vec<hn::RebindToUnsigned<D>>;
+  const VU plainX = hashed(wx, cellX, kHashX), plainY = hashed(wy, cellY, kHashY),
+           plainZ = hashed(wz, cellZ, kHashZ);
+  const VU seeds = hn::Set(du, seed);
+  const VU hx[2] = {plainX, hn::Add(plainX, hn::Set(du, kHashX))};
+  const VU hy[2] = {plainY, hn::Add(plainY, hn::Set(du, kHashY))};
+  const VU hz[2] = {hn::Xor(plainZ, seeds), hn::Xor(hn::Add(plainZ, hn::Set(du, kHashZ)), seeds)};
+  const VU hyz[4] = {hn::Xor(hy[0], hz[0]), hn::Xor(hy[1], hz[0]), hn::Xor(hy[0], hz[1]),
+                     hn::Xor(hy[1], hz[1])};
+  return mixCell(d, x0, y0, z0, [&](uint32_t ox, uint32_t oy, uint32_t oz, V dx, V dy, V dz) HWY_ATTR {
+    return table.dot(mixHash(du, hn::Xor(hx[ox], hyz[oy + 2 * oz])), dx, dy, dz);
+  });
 }
 
 // Points from `first` on whose number is a multiple of the vector's lanes; returns how many were done.

@@ -17,7 +17,14 @@ class FractalField final : public Field {
   FractalField(Basis basis, Fold fold, std::vector<NoiseOctave> octaves, double level)
       : basis_(basis), fold_(fold), octaves_(std::move(octaves)), level_(float(level)) {}
 
-  void evaluate(const Points& points, float* values) const override { sum(points, points.count, values); }
+  void evaluate(const Points& points, float* values) const override {
+    if (basis_ == Basis::perlin && fold_ == Fold::plain) {
+      std::fill_n(values, points.count, level_);
+      for (const NoiseOctave& octave : octaves_) addNoiseAtPoints(octave, points, values);
+    } else {
+      sum(points, points.count, values);
+    }
+  }
   void evaluate(const Lattice& lattice, float* values) const override {
     if (basis_ == Basis::perlin && fold_ == Fold::plain) {
       std::fill_n(values, kBlockPoints, level_);
