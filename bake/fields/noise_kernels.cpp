@@ -16,6 +16,8 @@ alignas(64) constexpr float kGradientZ[16] = {0, 0, 0, 0, 1, 1, -1, -1, 1, 1, -1
 }  // namespace nephele
 #endif
 
+// Vectors of a size that is unknown until run time can be held in no array, as these kernels do.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/fields/noise_kernels.cpp"
 #include <hwy/foreach_target.h>

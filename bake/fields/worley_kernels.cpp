@@ -5,6 +5,8 @@
 #include "bake/fields/cell_place.h"
 #include "bake/fields/shared_text.h"
 
+// Vectors of a size that is unknown until run time can be held in no array, as these kernels do.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/fields/worley_kernels.cpp"
 #include <hwy/foreach_target.h>
