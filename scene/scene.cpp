@@ -25,7 +25,6 @@ constexpr Range kStepVoxels{0.01, 100.0};
 constexpr double kMostOctaves = 16.0;
 constexpr Range kOctaveCount{0.0, kMostOctaves};
 // kMaxLights of shaders/shared/parameters.glsl: the renderer's parameters hold so many.
-constexpr size_t kMostLights = 8;
 
 std::array<double, 3> arrayOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 glm::dvec3 vectorOf(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }

@@ -54,6 +54,10 @@ struct PointLight {
 
 using Light = std::variant<Sun, PointLight>;
 
+/// Lights that a scene may hold: as many as the march's parameter block (asserted in
+/// preview/gpu/camera_rays.cpp).
+inline constexpr size_t kMostLights = 8;
+
 /// Uniform radiance from all around; shown behind the medium only where asked.
 struct Environment {
   Rgb constant{0.0, 0.0, 0.0};

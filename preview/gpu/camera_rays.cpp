@@ -14,6 +14,8 @@ using glm::dmat3;
 using glm::dvec3;
 using glm::vec4;
 
+static_assert(kMostLights == size_t{shared::kMaxLights});
+
 // Below this the rest of a ray cannot be seen in 8 bits, nor in a comparison at 1e-3.
 constexpr float kSmallestTransmittance = 1e-4f;
 

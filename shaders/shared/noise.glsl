@@ -5,9 +5,14 @@
 // up to symmetry, where every corner's gradient pulls the same way. So |perlinNoise| ≤ 1.
 NPH_CONST float kPerlinScale = 0.96487842532f;
 
+// A lattice point and a seed in one word, not yet mixed.
+NPH_FN uint cellKey(ivec3 cell, uint seed) {
+  return (uint(cell.x) * 0x9e3779b1u) ^ (uint(cell.y) * 0x85ebca77u) ^ (uint(cell.z) * 0xc2b2ae3du) ^ seed;
+}
+
 // Mixes a lattice point and a seed into 32 well-spread bits.
 NPH_FN uint hashCell(ivec3 cell, uint seed) {
-  uint h = (uint(cell.x) * 0x9e3779b1u) ^ (uint(cell.y) * 0x85ebca77u) ^ (uint(cell.z) * 0xc2b2ae3du) ^ seed;
+  uint h = cellKey(cell, seed);
   h ^= h >> 15u;
   h *= 0x2c1b3c6du;
   h ^= h >> 12u;
@@ -19,7 +24,7 @@ NPH_FN uint hashCell(ivec3 cell, uint seed) {
 // The gradient of a lattice point, 0…15: the best-mixed bits of one multiplication. Pairs of neighbours two cells apart and
 // nearer are as evenly spread as with hashCell.
 NPH_FN uint hashGradient(ivec3 cell, uint seed) {
-  uint h = (uint(cell.x) * 0x9e3779b1u) ^ (uint(cell.y) * 0x85ebca77u) ^ (uint(cell.z) * 0xc2b2ae3du) ^ seed;
+  uint h = cellKey(cell, seed);
   h ^= h >> 15u;
   return (h * 0x2c1b3c6du) >> 28u;
 }
