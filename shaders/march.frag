@@ -52,6 +52,8 @@ float brickDensity(uint slot, vec3 position) {
 #include "shared/random.glsl"
 #include "shared/ray_box.glsl"
 #include "shared/step_integral.glsl"
+#include "shared/walk.glsl"
+#include "shared/light.glsl"
 #include "shared/march.glsl"
 
 void main() {

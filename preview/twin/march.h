@@ -16,6 +16,8 @@ struct March {
   uint brickSlot(ivec3 brick) const { return bricks->slot(brick); }
   float brickDensity(uint slot, vec3 position) const { return bricks->density(slot, position); }
 
+#include "shaders/shared/walk.glsl"
+#include "shaders/shared/light.glsl"
 #include "shaders/shared/march.glsl"
 };
 

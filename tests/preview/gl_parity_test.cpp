@@ -98,6 +98,8 @@ TEST(GlParity, CpuAndGpuAgree) {
 
 TEST(GlParity, EachMutantBreaksTheGate) {
   const char* march = "shared/march.glsl";
+  const char* walk = "shared/walk.glsl";
+  const char* light = "shared/light.glsl";
   const char* phase = "shared/phase.glsl";
   const struct {
     const char* name;
@@ -111,14 +113,14 @@ TEST(GlParity, EachMutantBreaksTheGate) {
        {march, "params.sigmaS.w / length(direction)", "1.01f * params.sigmaS.w / length(direction)"}},
       {"1/12 for 1/(4 pi)", {phase, "(4.0f * kPi * base * sqrt(base))", "(12.0f * base * sqrt(base))"}},
       {"first shadow step dropped",
-       {march, "float dt = params.shadow.x / length(direction);",
+       {walk, "float dt = params.shadow.x / length(direction);",
         "float dt = params.shadow.x / length(direction); tNear += dt;"}},
-      {"octaves' b is a", {march, "scattering *= params.octaves.y", "scattering *= params.octaves.x"}},
-      {"octaves' c left out", {march, "g *= params.octaves.z", "g *= 1.0f"}},
+      {"octaves' b is a", {light, "scattering *= params.octaves.y", "scattering *= params.octaves.x"}},
+      {"octaves' c left out", {light, "g *= params.octaves.z", "g *= 1.0f"}},
       {"point light without falloff",
-       {march, "l.irradiance /= l.reach * l.reach", "l.irradiance /= l.reach"}},
+       {light, "l.irradiance /= l.reach * l.reach", "l.irradiance /= l.reach"}},
       {"sky twice",
-       {march, "vec3(params.environment) / density", "2.0f * vec3(params.environment) / density"}},
+       {light, "vec3(params.environment) / density", "2.0f * vec3(params.environment) / density"}},
       {"series x/2 -> 0.4 x", {"shared/step_integral.glsl", "x * (0.5f -", "x * (0.4f -"}},
       {"a hundredth of a voxel off",
        {"march.frag", "vec3 f = position - vec3(cell);", "vec3 f = position - vec3(cell) + 0.01;"}},
@@ -172,7 +174,7 @@ TEST(GlParity, SkippingEmptyBricksChangesNothing) {
   const FilmPicture skipping = render({});
   const FilmPicture full =
       render({{"shared/march.glsl", "steps = max(1, int(min(floor(toExit - 1e-3f), 1e6f)));", "steps = 1;"},
-              {"shared/march.glsl", "while (t + start * dt < end) {", "while (false) {"}});
+              {"shared/walk.glsl", "while (t + start * dt < end) {", "while (false) {"}});
   EXPECT_LT(skipping.densitySamples, 0.7 * full.densitySamples) << "nothing was skipped";
   double worst = 0.0;
   for (size_t plane = 0; plane < full.picture.planes.size(); ++plane)

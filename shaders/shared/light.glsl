@@ -1,0 +1,93 @@
+// What reaches a point of the medium from lights and sky, and how much of it is scattered along a ray [MODEL.md, section 2].
+// Included as march.glsl is, after walk.glsl.
+
+// Σ over orders of b^m · phase(c^m g) · e^(−a^m σ_t column), to be multiplied by σ_s and the light's irradiance.
+NPH_FN vec3 scatteredByOrders(vec3 toLight, vec3 ray, float column) {
+  vec3 sum = vec3(0.0f);
+  float extinction = 1.0f;
+  float scattering = 1.0f;
+  float g = params.sigmaT.w;
+  for (int m = 0; m <= params.counts.y; ++m) {
+    sum += scattering * phaseHenyeyGreenstein(toLight, ray, g) * exp(-(extinction * column) * vec3(params.sigmaT));
+    extinction *= params.octaves.x;
+    scattering *= params.octaves.y;
+    g *= params.octaves.z;
+  }
+  return sum;
+}
+
+// The column beyond which no order lets through more than the smallest transmittance worth following.
+NPH_FN float columnThatHides() {
+  float extinction = min(params.sigmaT.x, min(params.sigmaT.y, params.sigmaT.z));
+  for (int m = 0; m < params.counts.y; ++m) extinction *= params.octaves.x;
+  // 1e30: with no extinction nothing hides.
+  return extinction > 0.0f ? min(-log(params.environment.w) / extinction, 1e30f) : 1e30f;
+}
+
+// A light or, beyond the last one, the sky, as seen from a point.
+struct Lighting {
+  vec3 toLight;       // unit, world axes
+  vec3 toLightIndex;  // the same in voxels per world unit
+  float reach;        // world distance to the light
+  vec3 irradiance;    // for the sky: radiance over the density with which the direction was drawn
+};
+
+NPH_FN Lighting lightingFrom(int i, vec3 position) {
+  Lighting l;
+  l.toLight = vec3(params.lights[i].direction);
+  l.toLightIndex = vec3(params.lights[i].directionIndex);
+  l.reach = 3.0e38f;
+  l.irradiance = vec3(params.lights[i].power);
+  if (int(params.lights[i].direction.w) == kLightPoint) {
+    vec3 apart = vec3(params.lights[i].directionIndex) - position;
+    vec3 apartWorld = apart.x * vec3(params.worldFromIndexX) + apart.y * vec3(params.worldFromIndexY) +
+                      apart.z * vec3(params.worldFromIndexZ);
+    l.reach = max(length(apartWorld), 1e-15f);  // a sample on the light has no direction; its square stays a float
+    l.toLight = apartWorld / l.reach;
+    l.toLightIndex = apart / l.reach;
+    l.irradiance /= l.reach * l.reach;
+  }
+  return l;
+}
+
+// One direction to the sky: half of them follow the phase function, half are uniform, so that the weight stays bounded for
+// all orders. Neighbouring pixels look the same way, so that differences stay smooth; over the picture's samples the
+// directions follow the additive recurrence of preview/gpu/sub_pixels.h, in integers.
+NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
+  uint rotation = randomState(place, 0u, 0u, uint(params.brickCount.w));
+  float u1 = float((rotation + number * 3242174889u) >> 8u) * (1.0f / 16777216.0f);
+  float u2 = float((hashBits(rotation) + number * 2447445414u) >> 8u) * (1.0f / 16777216.0f);
+  bool byPhase = ((place + number) & 1u) == 0u;
+  Lighting l;
+  l.toLight = sampleHenyeyGreenstein(ray, byPhase ? params.sigmaT.w : 0.0f, u1, u2);
+  l.toLightIndex = l.toLight.x * vec3(params.indexFromWorldX) + l.toLight.y * vec3(params.indexFromWorldY) +
+                   l.toLight.z * vec3(params.indexFromWorldZ);
+  l.reach = 3.0e38f;
+  float density = 0.5f * phaseHenyeyGreenstein(l.toLight, ray, params.sigmaT.w) + 0.5f * phaseIsotropic();
+  l.irradiance = vec3(params.environment) / density;
+  return l;
+}
+
+// Source function at a point: Σ over lights and the sky, per unit density, before σ_s. `place` counts the points lit along
+// the ray, `number` the picture's samples.
+NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
+                         NPH_INOUT(vec2) cost) {
+  vec3 sum = vec3(0.0f);
+  bool sky = max(params.environment.x, max(params.environment.y, params.environment.z)) > 0.0f;
+  int count = params.counts.x + (sky ? 1 : 0);
+  int done = 0;
+  for (int i = 0; i < count; ++i) {
+    float start = params.counts.w != 0 ? nextUniform(random) : 0.5f;
+    Lighting l;
+    if (i < params.counts.x) {
+      l = lightingFrom(i, position);
+    } else {
+      l = lightingFromSky(ray, place, number);
+    }
+    float column = columnDensity(position, l.toLightIndex, l.reach, enough, start, cost);
+    sum += l.irradiance * scatteredByOrders(l.toLight, ray, column);
+    done += 1;
+  }
+  if (done < count) cost.y = 1.0f;
+  return sum;
+}
