@@ -66,17 +66,16 @@ inline Picture weatherPicture() {
   return picture;
 }
 
-/// The path of a sample for the row's file, written when first asked for.
+/// The path of a sample for the row's file, written when first asked for. From any thread.
 inline std::string sampleFile(std::string_view row) {
-  static const SampleFolder folder;
-  const std::string path = folder.file(row == "weather_map" ? "weather.exr" : "cube.obj");
-  if (!std::filesystem::exists(path)) {
-    if (row == "weather_map")
-      writeExr(path, weatherPicture());
-    else
-      std::ofstream(path) << cubeAsObj(0.6);
-  }
-  return path;
+  struct Samples : SampleFolder {
+    Samples() {
+      writeExr(file("weather.exr"), weatherPicture());
+      std::ofstream(file("cube.obj")) << cubeAsObj(0.6);
+    }
+  };
+  static const Samples samples;
+  return samples.file(row == "weather_map" ? "weather.exr" : "cube.obj");
 }
 
 /// The row at its defaults. Child fields are two balls side by side for lists; for single ones fBm where the

@@ -85,7 +85,7 @@ class Voxelizer {
  private:
   Box worldBox(const Cube& cube) const {
     const glm::dvec3 low(cube.origin.x(), cube.origin.y(), cube.origin.z());
-    return {low * settings_.voxelSize, (low + double(cube.edge - 1)) * settings_.voxelSize};
+    return roundedOutwards({low * settings_.voxelSize, (low + double(cube.edge - 1)) * settings_.voxelSize});
   }
 
   /// Appends the leaves under `cube` that may hold values above the cutoff, in a fixed order.

@@ -102,7 +102,8 @@ Interval boundBasis(Basis basis, const NoiseOctave& octave, const Box& box) {
           : double(valueNoiseAt(octave, cellPlace(p.x, octave.cellSize), cellPlace(p.y, octave.cellSize),
                                 cellPlace(p.z, octave.cellSize)));
   const double room = slope * across + kPlaceRoom;
-  return clamped({centre - room, centre + room}, all.low, all.high);
+  const Interval near{centre - room, centre + room};
+  return basis == Basis::worley ? clamped(near, -1.0, 1.0) : both(near, all);
 }
 
 }  // namespace nephele

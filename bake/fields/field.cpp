@@ -21,6 +21,11 @@ Box hull(const Box& a, const Box& b) {
 
 Box grown(const Box& box, double by) { return {box.low - by, box.high + by}; }
 
+Box roundedOutwards(const Box& box) {
+  constexpr double kFourUlps = 1.0 / double(uint64_t{1} << 50);
+  return {box.low - kFourUlps * glm::abs(box.low), box.high + kFourUlps * glm::abs(box.high)};
+}
+
 LatticePoints::LatticePoints(const Lattice& lattice) : origin(lattice.origin) {
   float along[kBlockEdge];
   for (int n = 0; n < kBlockEdge; ++n) along[n] = float(n * lattice.spacing);

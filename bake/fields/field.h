@@ -46,6 +46,9 @@ Box intersection(const Box& a, const Box& b);
 /// The smallest box that holds both; empty boxes add nothing.
 Box hull(const Box& a, const Box& b);
 Box grown(const Box& box, double by);
+/// Grown by four units in the last place of its coordinates: holds the points of a lattice whose corners it
+/// was made from, and what fields make of them, however those doubles are rounded.
+Box roundedOutwards(const Box& box);
 
 /// Immutable once built; every method may be called from any number of threads.
 class Field {
@@ -60,8 +63,9 @@ class Field {
   /// override this.
   virtual void evaluate(const Lattice& lattice, float* values) const;
 
-  /// An interval that certainly contains every value that either evaluate() gives in the box, rounding
-  /// included. The box is finite and not empty.
+  /// An interval that certainly contains every value that either evaluate() gives in the box, rounding to
+  /// floats included; that of the box's own doubles is the caller's (roundedOutwards). The box is finite and
+  /// not empty.
   virtual Interval bounds(const Box& box) const = 0;
 
   /// A box outside which every value is exactly 0. Infinite where there is none.

@@ -60,7 +60,8 @@ class MeshField final : public Field {
     const glm::dvec3 centre = box.centre();
     const double apart = solid_.distance(centre), distance = solid_.contains(centre) ? -apart : apart;
     // The distance becomes a float; beside that, doubles round by one part in 10^12 of the coordinates.
-    const double reach = lengthOf(box.halfSize()) + kRoom * apart + 1e-12 * lengthOf(greatestMagnitudes(box));
+    const double way = lengthOf(box.halfSize());
+    const double reach = way + kRoom * (apart + way) + 1e-12 * lengthOf(greatestMagnitudes(box));
     return envelopeOver({distance - reach, distance + reach}, falloff_);
   }
 

@@ -27,9 +27,9 @@ class HeightProfile final : public Field {
     const double room = 1e-6 * (to - from) + 1e-12 * std::max(std::abs(from), std::abs(to));
     from -= room;
     to += room;
-    Interval all = hullOf(only(from), only(to));
+    Interval all = hullOf(exactly(valueAt(from)), exactly(valueAt(to)));
     for (const auto& [x, y] : curve_)
-      if (from <= x && x <= to) all = hullOf(all, {y, y});
+      if (from <= x && x <= to) all = hullOf(all, exactly(y));
     return all.exact() ? all : rounded(all);
   }
 
@@ -43,10 +43,8 @@ class HeightProfile final : public Field {
 
  private:
   double worldOf(double height) const { return base_ + height * (top_ - base_); }
-  Interval only(double height) const {
-    const double v = valueAt(height);
-    return {v, v};
-  }
+  /// Values are floats, and one that holds throughout is to be known exactly.
+  static Interval exactly(double value) { return {double(float(value)), double(float(value))}; }
   double valueAt(double height) const {
     if (height <= curve_.front()[0]) return curve_.front()[1];
     if (height >= curve_.back()[0]) return curve_.back()[1];
