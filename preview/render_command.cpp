@@ -59,9 +59,10 @@ void addEnvironment(Picture& picture, const Environment& environment) {
 Backdrop backdropOf(const Scene& scene, double exposureEv) {
   Backdrop backdrop;  // black where the environment is in the picture already
   if (scene.environment.show) return backdrop;
+  const BackdropColours colours = scene.backdrop.value_or(BackdropColours{});
   for (size_t c = 0; c < backdrop.top.size(); ++c) {
-    backdrop.bottom[c] = static_cast<float>(scene.backdrop.bottom[c] * std::exp2(-exposureEv));
-    backdrop.top[c] = static_cast<float>(scene.backdrop.top[c] * std::exp2(-exposureEv));
+    backdrop.bottom[c] = static_cast<float>(colours.bottom[c] * std::exp2(-exposureEv));
+    backdrop.top[c] = static_cast<float>(colours.top[c] * std::exp2(-exposureEv));
   }
   return backdrop;
 }

@@ -77,6 +77,15 @@ Medium exposedMedium(const BrickVolume& bricks) {
   return medium;
 }
 
+void turnLights(Scene& scene, const dvec3& up) {
+  if (!scene.lightsFollowUp) return;
+  for (Light& light : scene.lights) {
+    if (Sun* sun = std::get_if<Sun>(&light)) sun->toLight = turnedTo(up, sun->toLight);
+    if (PointLight* point = std::get_if<PointLight>(&light)) point->position = turnedTo(up, point->position);
+  }
+  scene.lightsFollowUp = false;
+}
+
 }  // namespace
 
 dvec3 upOf(const BrickVolume& bricks) {
@@ -131,16 +140,23 @@ ChosenMedium chooseMedium(const Scene& scene, const BrickVolume& bricks) {
           describe("auto-exposure (mean density 8 optical depths thick)", medium)};
 }
 
+dvec3 turnedTo(const dvec3& up, const dvec3& direction) {
+  return std::abs(up.y) > std::abs(up.z) ? dvec3(direction.x, direction.z, -direction.y) : direction;
+}
+
 ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double aspect,
                          std::string& mediumSentence) {
   ChosenMedium chosen = chooseMedium(scene, bricks);
   mediumSentence = std::move(chosen.sentence);
-  ViewedScene view{scene, Camera{}, chosen.medium};
+  ViewedScene view{scene, Camera{}, chosen.medium, upOf(bricks), nullptr};
+  if (scene.environment.kind == Environment::Kind::exr)
+    view.environmentMap = loadEnvironmentMap(scene.environment.exr.path);
+  turnLights(view.scene, view.up);
   if (scene.camera) {
     view.camera = *scene.camera;
-    if (!scene.cameraUpGiven) view.camera.up = upOf(bricks);
+    if (!scene.cameraUpGiven) view.camera.up = view.up;
   } else {
-    view.camera = frameCamera(bricks, upOf(bricks), Camera{}.fov, aspect);
+    view.camera = frameCamera(bricks, view.up, Camera{}.fov, aspect);
   }
   return view;
 }

@@ -32,7 +32,13 @@ struct ChosenMedium {
 /// gives an optical depth of 8. Throws InputError where the metadata does not hold a medium.
 ChosenMedium chooseMedium(const Scene& scene, const BrickVolume& bricks);
 
-/// Camera and medium of a scene, given or chosen. A camera without `up` takes the file's.
+/// `direction`, given for Z up, where the world's up is `up`: itself, or a quarter turn about X that takes +Z
+/// to +Y and +Y to −Z.
+glm::dvec3 turnedTo(const glm::dvec3& up, const glm::dvec3& direction);
+
+/// Camera and medium of a scene, given or chosen; the file's up; the environment's picture, read. A camera
+/// without `up` takes the file's. Lights that follow up are turned, and stay so. Throws InputError for an
+/// environment that cannot be read.
 ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double aspect,
                          std::string& mediumSentence);
 

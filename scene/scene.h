@@ -1,4 +1,5 @@
-// What is lit and from where: camera, medium, octaves, lights, environment, look, march; and YAML both ways.
+// What is lit and from where: camera, medium, the terms of the light, lights, environment, look, march; and
+// YAML both ways. What is on once the look has decided: scene/light_model.h.
 // Depends on base alone. Lengths in world units; angles in radians here, in degrees in files. Names and
 // defaults: DESIGN.md, section 1.
 #pragma once
@@ -32,11 +33,45 @@ struct Medium {
   double g = 0.6;
 };
 
+/// A term of the light is on, off, or (nullopt, `auto` in files) as the look decides. In a file, a term's map
+/// without `on` switches it on.
+using Switch = std::optional<bool>;
+
+/// Silver lining plus: mix(HG(inS), HG(−outS), blend) in the place of HG(g). Of one kind with the medium's
+/// phase function: it scatters as much. Look: on in `report`.
+struct SilverLining {
+  Switch on;
+  double inS = 0.8;     // asymmetry of the lobe towards the light, in [0, 1)
+  double outS = 0.3;    // of the lobe away from it, in [0, 1)
+  double blend = 0.35;  // share of the second lobe, in [0, 1]
+};
+
+/// Ambient out-scattering: darkens in-scattering where the medium is dense, less low in the cloud. Not
+/// physical. Look: on in `report`.
+struct Powder {
+  Switch on;
+  double oSa = 0.5;  // strength, in [0, 100]; the product with density is cut at 1
+};
+
+/// Light from sample to light source: by marching, or by the chord to the exit of the ellipsoid inscribed in
+/// the active box at the mean active density (cheap; wrong inside uneven clouds).
+enum class LightTransmittance { marched, chord };
+
 /// Orders of scattering beyond the first: order m uses a^m σ_t towards the light, b^m σ_s, c^m g. Factors in
-/// [0, 1].
+/// [0, 1]. Look: none in `physical`, kReportOctaves in `report`.
 struct Octaves {
-  int count = 0;
+  std::optional<int> count;  // nullopt (`auto` in files): as the look decides
   double a = 0.5, b = 0.5, c = 0.5;
+};
+
+/// Thermal emission σ_a ρ · scale · B(T · temperatureScale), T from the grid of that name in the same file.
+/// nullopt (`auto`): on in both looks where the file has the grid. On without the grid is the user's error.
+struct Emission {
+  Emission();  // not inline: g++ 12 takes the text of a temporary scene for uninitialised
+  Switch on;
+  double scale = 1.0;             // ≥ 0; B has luminance 1 at 2000 K (scene/blackbody.h)
+  double temperatureScale = 1.0;  // kelvin per unit of the grid, ≥ 0
+  std::string grid;               // "temperature"
 };
 
 /// Parallel light; irradiance on a plane that faces it. toLight is of unit length (files may give any length
@@ -58,13 +93,36 @@ using Light = std::variant<Sun, PointLight>;
 /// preview/gpu/camera_rays.cpp).
 inline constexpr size_t kMostLights = 8;
 
-/// Uniform radiance from all around; shown behind the medium only where asked.
+/// Radiance over elevation alone [Neyret]: ground below, horizon, zenith; the shape is in
+/// shaders/shared/environment.glsl. Colours linear Rec.709, each ≥ 0.
+struct SkyRamp {
+  Rgb ground{0.26, 0.19, 0.13};
+  Rgb horizon{0.85, 0.92, 1.0};
+  Rgb zenith{0.10, 0.24, 0.60};
+  double cloudiness = 0.2;  // in [0, 1]: dims the ground's reflection and raises the horizon's white
+  double intensity = 1.0;   // factor of all radiance, ≥ 0
+};
+
+/// A lat-long EXR: top is up; the centre column looks along −Z where Y is up, +Y where Z is up.
+struct LatLong {
+  std::string path;       // as opened: files give it relative to themselves
+  double rotation = 0.0;  // radians about up, counter-clockwise seen from above: the centre column turns left
+  double intensity = 1.0;  // factor of all radiance, ≥ 0
+};
+
+/// Radiance from all around, of one kind; the others' values are kept for the panel alone. Shown behind the
+/// medium in every picture where asked; in the `report` look behind PNG and window anyhow.
 struct Environment {
+  enum class Kind { constant, ramp, exr };
+  Kind kind = Kind::constant;
   Rgb constant{0.0, 0.0, 0.0};
+  SkyRamp ramp;
+  LatLong exr;
   bool show = false;
 };
 
-/// Colours behind PNG and window for people to look at: never light, never in an EXR. Linear Rec.709.
+/// Colours behind PNG and window for people to look at, in place of an environment that is not asked to show:
+/// never light, never in an EXR. Linear Rec.709.
 struct BackdropColours {
   Rgb bottom{0.42, 0.55, 0.72};
   Rgb top{0.10, 0.22, 0.48};
@@ -85,15 +143,23 @@ struct Scene {
   std::optional<Camera> camera;
   bool cameraUpGiven = false;
   std::optional<Medium> medium;
+  SilverLining silverLining;
+  Powder powder;
+  LightTransmittance lightTransmittance = LightTransmittance::marched;
   Octaves octaves;
+  Emission emission;
   std::vector<Light> lights{Sun{}};
   Environment environment;
-  BackdropColours backdrop;
+  std::optional<BackdropColours> backdrop;  // nullopt: the environment in `report`, the default in `physical`
   Look look = Look::physical;
   MarchSettings march;
+  // No key of files; presets set it. Directions of lights are for Z up, and resolveScene (preview/resolve.h)
+  // turns them where the file's up is Y.
+  bool lightsFollowUp = false;
 };
 
-/// Reads a scene's map. Adds every error it finds to `out`; the result is usable only where none was added.
+/// Reads a scene's map. Paths in it are relative to the file that holds them. Adds every error it finds to
+/// `out`; the result is usable only where none was added.
 Scene readScene(const yaml::Node& node, Diagnostics& out);
 
 /// Reads a scene file, or the `scene:` of any file that has one at top level. Throws InputError with all
@@ -101,10 +167,12 @@ Scene readScene(const yaml::Node& node, Diagnostics& out);
 Scene loadScene(const std::string& path);
 
 /// The scene as YAML that readScene reads back to the same values (nullopt keys are left out), with comments
-/// on units.
-std::string writeScene(const Scene& scene);
+/// on units. Paths are written relative to `folder` where one is given, else as they are.
+std::string writeScene(const Scene& scene, const std::string& folder = {});
 
-/// Names of looks as in files: "physical", "report".
+/// Names as in files: "physical", "report"; "marched", "chord"; "constant", "ramp", "exr".
 std::string nameOf(Look look);
+std::string nameOf(LightTransmittance transmittance);
+std::string nameOf(Environment::Kind kind);
 
 }  // namespace nephele

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "preview/app/orbit_camera.h"
+#include "scene/light_model.h"
 
 namespace nephele {
 namespace {
@@ -70,10 +71,13 @@ bool mediumWidgets(Medium& medium) {
   return changed;
 }
 
-bool octaveWidgets(Octaves& octaves) {
+/// `shown`: the orders in use where the scene leaves them to the look.
+bool octaveWidgets(Octaves& octaves, int shown) {
   constexpr int kMost = 8;
-  bool changed = ImGui::SliderInt("count", &octaves.count, 0, std::max(kMost, octaves.count));
-  if (octaves.count == 0) return changed;
+  int count = octaves.count.value_or(shown);
+  bool changed = ImGui::SliderInt("count", &count, 0, std::max(kMost, count));
+  if (changed) octaves.count = count;
+  if (count == 0) return changed;
   changed |= slider("a extinction", octaves.a, 0.0f, 1.0f, "%.2f", kLinear);
   changed |= slider("b scattering", octaves.b, 0.0f, 1.0f, "%.2f", kLinear);
   changed |= slider("c asymmetry", octaves.c, 0.0f, 1.0f, "%.2f", kLinear);
@@ -119,7 +123,10 @@ bool panelWindow(PanelState& state, const ViewerStats& stats) {
     };
     group("Sun", [&] { return sunWidgets(state); });
     group("Medium, per unit density per unit length", [&] { return mediumWidgets(state.view.medium); });
-    group("Octaves beyond single scattering", [&] { return octaveWidgets(state.view.scene.octaves); });
+    group("Octaves beyond single scattering", [&] {
+      return octaveWidgets(state.view.scene.octaves,
+                           lightModelOf(state.view.scene, state.view.medium).octaveCount);
+    });
     group("March", [&] { return marchWidgets(state.view.scene.march); });
     ImGui::TextDisabled("F1 lists the keys");
     ImGui::PopItemWidth();

@@ -118,8 +118,9 @@ void Viewer::show(const Scene& scene, double exposureEv, int width, int height) 
   best().bindForDisplay();
   glUseProgram(display_.name());
   glBindVertexArray(noVertices_.name());
-  setRgb(kBottom, scene.backdrop.bottom);
-  setRgb(kTop, scene.backdrop.top);
+  const BackdropColours colours = scene.backdrop.value_or(BackdropColours{});
+  setRgb(kBottom, colours.bottom);
+  setRgb(kTop, colours.top);
   setRgb(kEnvironment, scene.environment.constant);
   glUniform2f(kWindowSize, static_cast<float>(width), static_cast<float>(height));
   glUniform1f(kExposure, static_cast<float>(std::exp2(exposureEv)));

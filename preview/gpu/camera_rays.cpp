@@ -2,6 +2,7 @@
 #include "preview/gpu/camera_rays.h"
 
 #include "base/error.h"
+#include "scene/light_model.h"
 
 #include <cmath>
 #include <glm/matrix.hpp>
@@ -117,10 +118,14 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   p.boxMax = row(dvec3(bricks.activeMax - brickCorner));
   if (bricks.empty()) p.boxMin = p.boxMax = vec4(0.0f);  // a box that no ray meets
   const Scene& scene = view.scene;
+  const LightModel light = lightModelOf(scene, view.medium);
+  if (scene.environment.kind != Environment::Kind::constant)
+    throw InputError({}, "an environment by '" + nameOf(scene.environment.kind) + "' is not lit by the march yet",
+                     "use 'constant'");
   const dvec3 sigmaS = vectorOf(view.medium.sigmaS);
   p.sigmaT = row(sigmaS + vectorOf(view.medium.sigmaA), view.medium.g);
   p.sigmaS = row(sigmaS, scene.march.stepVoxels);
-  p.octaves = row(dvec3(scene.octaves.a, scene.octaves.b, scene.octaves.c), 0.0);
+  p.octaves = row(dvec3(light.a, light.b, light.c), 0.0);
   // Products with steps and coefficients must stay floats, and columns below the march's own infinity.
   constexpr double kLargestDensity = 1e15;
   if (bricks.maximum > kLargestDensity)
@@ -129,7 +134,7 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   NEPHELE_CHECK_LE(1.0, scene.march.shadowGrowth);  // less would never arrive
   p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, 0.0), 0.0);
   p.environment = row(vectorOf(scene.environment.constant), double{kSmallestTransmittance});
-  p.counts.y = scene.octaves.count;
+  p.counts.y = light.octaveCount;
   p.counts.w = randomStart ? 1 : 0;
   p.brickCount = glm::ivec4(bricks.brickCount, static_cast<int>(seed));
   return p;

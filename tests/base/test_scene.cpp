@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -44,6 +45,11 @@ TEST(Scene, DefaultsAreTheContracts) {
   EXPECT_FALSE(filled.cameraUpGiven);
   EXPECT_EQ(filled.medium->sigmaS, (Rgb{8.0, 8.0, 8.0}));
   EXPECT_TRUE(sceneOf("lights: []").lights.empty());
+  EXPECT_EQ(scene.environment.kind, Environment::Kind::constant);
+  EXPECT_EQ(scene.environment.constant, (Rgb{0.0, 0.0, 0.0}));
+  EXPECT_FALSE(scene.silverLining.on || scene.powder.on || scene.emission.on || scene.octaves.count);
+  EXPECT_FALSE(scene.backdrop);
+  EXPECT_FALSE(scene.lightsFollowUp);
 }
 
 TEST(Scene, ReadsEveryKey) {
@@ -55,6 +61,8 @@ TEST(Scene, ReadsEveryKey) {
       "  - point: { position: [7, 8, 9], intensity: [1, 2, 3] }\n"
       "environment: { constant: [0.5, 0.6, 0.7], show: true }\n"
       "background: { bottom: 0.25, top: [0.1, 0.2, 0.3] }\n"
+      "phase: { silver_lining: { in_s: 0.9, out_s: 0.2, blend: 0.1 } }\npowder: { on: auto, o_sa: 2 }\n"
+      "light_transmittance: chord\nemission: { on: false, scale: 3, temperature_scale: 2000, grid: heat }\n"
       "look: report\nmarch: { step: 0.25, shadow_step: 2 }\n");
   EXPECT_EQ(scene.camera->target, glm::dvec3(4, 5, 6));
   EXPECT_TRUE(scene.cameraUpGiven);
@@ -65,13 +73,82 @@ TEST(Scene, ReadsEveryKey) {
   EXPECT_EQ(std::get<Sun>(scene.lights[0]).toLight, glm::dvec3(0, 0, 1));
   EXPECT_EQ(std::get<PointLight>(scene.lights[1]).intensity, (Rgb{1, 2, 3}));
   EXPECT_TRUE(scene.environment.show);
-  EXPECT_EQ(scene.backdrop.bottom, (Rgb{0.25, 0.25, 0.25}));
+  EXPECT_EQ(scene.backdrop->bottom, (Rgb{0.25, 0.25, 0.25}));
+  EXPECT_EQ(scene.silverLining.on, Switch(true));
+  EXPECT_EQ(scene.silverLining.inS, 0.9);
+  EXPECT_EQ(scene.silverLining.outS, 0.2);
+  EXPECT_EQ(scene.silverLining.blend, 0.1);
+  EXPECT_EQ(scene.powder.on, Switch());
+  EXPECT_EQ(scene.powder.oSa, 2.0);
+  EXPECT_EQ(scene.lightTransmittance, LightTransmittance::chord);
+  EXPECT_EQ(scene.emission.on, Switch(false));
+  EXPECT_EQ(scene.emission.scale, 3.0);
+  EXPECT_EQ(scene.emission.temperatureScale, 2000.0);
+  EXPECT_EQ(scene.emission.grid, "heat");
   EXPECT_EQ(scene.look, Look::report);
   EXPECT_EQ(scene.march.stepVoxels, 0.25);
   EXPECT_EQ(scene.march.shadowStepVoxels, 2.0);
 }
 
+TEST(Scene, EnvironmentsOfEachKind) {
+  const Environment ramp =
+      sceneOf(
+          "environment: { ramp: { ground: 0.1, horizon: [1, 2, 3], zenith: [0, 0, 1], cloudiness: 0.7, "
+          "intensity: 2 } }")
+          .environment;
+  EXPECT_EQ(ramp.kind, Environment::Kind::ramp);
+  EXPECT_EQ(ramp.ramp.ground, (Rgb{0.1, 0.1, 0.1}));
+  EXPECT_EQ(ramp.ramp.horizon, (Rgb{1, 2, 3}));
+  EXPECT_EQ(ramp.ramp.zenith, (Rgb{0, 0, 1}));
+  EXPECT_EQ(ramp.ramp.cloudiness, 0.7);
+  EXPECT_EQ(ramp.ramp.intensity, 2.0);
+  const Environment exr =
+      sceneOf("environment: { exr: { path: a/b.exr, rotation: 90, intensity: 3 } }").environment;
+  EXPECT_EQ(exr.kind, Environment::Kind::exr);
+  EXPECT_EQ(exr.exr.path, "a/b.exr");
+  EXPECT_NEAR(exr.exr.rotation, std::numbers::pi / 2.0, 1e-15);
+  EXPECT_EQ(exr.exr.intensity, 3.0);
+  EXPECT_EQ(sceneOf("environment: { ramp: {} }").environment.kind, Environment::Kind::ramp);
+  EXPECT_EQ(sceneOf("environment: { exr: sky.exr }").environment.exr.path, "sky.exr");
+}
+
+TEST(Scene, PathsAreRelativeToTheFileThatHoldsThem) {
+  const ScratchFolder scratch;
+  const std::string scene = scratch.write("s.yaml", "environment: { exr: sky.exr }\n");
+  EXPECT_EQ(loadScene(scene).environment.exr.path, scratch.file("sky.exr"));
+  const std::string text = writeScene(loadScene(scene), std::filesystem::path(scene).parent_path().string());
+  EXPECT_NE(text.find("path: \"sky.exr\""), std::string::npos) << text;
+  const std::string elsewhere = scratch.write("t.yaml", "environment: { exr: /far/sky.exr }\n");
+  EXPECT_EQ(loadScene(elsewhere).environment.exr.path, "/far/sky.exr");
+}
+
+void expectEqualTerms(const Scene& a, const Scene& b) {
+  EXPECT_EQ(a.silverLining.on, b.silverLining.on);
+  EXPECT_EQ(a.silverLining.inS, b.silverLining.inS);
+  EXPECT_EQ(a.silverLining.outS, b.silverLining.outS);
+  EXPECT_EQ(a.silverLining.blend, b.silverLining.blend);
+  EXPECT_EQ(a.powder.on, b.powder.on);
+  EXPECT_EQ(a.powder.oSa, b.powder.oSa);
+  EXPECT_EQ(a.lightTransmittance, b.lightTransmittance);
+  EXPECT_EQ(a.emission.on, b.emission.on);
+  EXPECT_EQ(a.emission.scale, b.emission.scale);
+  EXPECT_EQ(a.emission.temperatureScale, b.emission.temperatureScale);
+  EXPECT_EQ(a.emission.grid, b.emission.grid);
+  EXPECT_EQ(a.environment.kind, b.environment.kind);
+  EXPECT_EQ(a.environment.constant, b.environment.constant);
+  EXPECT_EQ(a.environment.show, b.environment.show);
+  EXPECT_EQ(a.environment.ramp.ground, b.environment.ramp.ground);
+  EXPECT_EQ(a.environment.ramp.horizon, b.environment.ramp.horizon);
+  EXPECT_EQ(a.environment.ramp.zenith, b.environment.ramp.zenith);
+  EXPECT_EQ(a.environment.ramp.cloudiness, b.environment.ramp.cloudiness);
+  EXPECT_EQ(a.environment.ramp.intensity, b.environment.ramp.intensity);
+  EXPECT_EQ(a.environment.exr.path, b.environment.exr.path);
+  EXPECT_EQ(a.environment.exr.rotation, b.environment.exr.rotation);
+  EXPECT_EQ(a.environment.exr.intensity, b.environment.exr.intensity);
+}
+
 void expectEqual(const Scene& a, const Scene& b) {
+  expectEqualTerms(a, b);
   ASSERT_EQ(a.camera.has_value(), b.camera.has_value());
   if (a.camera) {
     EXPECT_EQ(a.camera->position, b.camera->position);
@@ -101,18 +178,25 @@ void expectEqual(const Scene& a, const Scene& b) {
       EXPECT_EQ(std::get<PointLight>(a.lights[i]).intensity, std::get<PointLight>(b.lights[i]).intensity);
     }
   }
-  EXPECT_EQ(a.environment.constant, b.environment.constant);
-  EXPECT_EQ(a.environment.show, b.environment.show);
-  EXPECT_EQ(a.backdrop.bottom, b.backdrop.bottom);
-  EXPECT_EQ(a.backdrop.top, b.backdrop.top);
+  ASSERT_EQ(a.backdrop.has_value(), b.backdrop.has_value());
+  if (a.backdrop) {
+    EXPECT_EQ(a.backdrop->bottom, b.backdrop->bottom);
+    EXPECT_EQ(a.backdrop->top, b.backdrop->top);
+  }
   EXPECT_EQ(a.look, b.look);
   EXPECT_EQ(a.march.stepVoxels, b.march.stepVoxels);
   EXPECT_EQ(a.march.shadowStepVoxels, b.march.shadowStepVoxels);
+  EXPECT_EQ(a.march.shadowGrowth, b.march.shadowGrowth);
 }
 
 TEST(Scene, WrittenAndReadIsTheSame) {
   for (const char* text :
        {"", "lights: []\n", "look: report\ncamera: { fov: 1e-3 }\n",
+        "phase: { silver_lining: {} }\npowder: { on: auto, o_sa: 0.7 }\nlight_transmittance: chord\n",
+        "phase: { silver_lining: { on: false, in_s: 0.1, out_s: 0, blend: 1 } }\npowder: { on: false }\n",
+        "emission: { scale: 0.3, grid: 'a \"b\" \\c' }\noctaves: { count: auto, b: 0.1 }\n",
+        "environment: { ramp: { ground: 0.1, cloudiness: 0.3, intensity: 0.7 }, show: true }\n",
+        "environment: { exr: { path: 'a: b.exr', rotation: 77.7, intensity: 2 } }\n",
         "camera: { position: [0.1, -1e-9, 1e9], up: [1, 1, 0], fov: 77.7 }\nmedium: { sigma_s: 0.3, g: 0.999 "
         "}\n"
         "octaves: { count: 2, a: 0.3 }\n"
@@ -160,10 +244,26 @@ TEST(Scene, Refusals) {
        "s:1:19: error: 'to_light' has no length; it points from the cloud to the sun"},
       {"lights: [sun: {}, sun: {}, sun: {}, sun: {}, sun: {}, sun: {}, sun: {}, sun: {}, sun: {}]",
        "s:1:82: error: at most 8 lights are rendered, found 9"},
-      {"environment: { ramp: 1 }",
-       "s:1:16: error: an environment by 'ramp' is not built yet; use 'constant'"},
-      {"environment: { exr: a.exr }",
-       "s:1:16: error: an environment by 'exr' is not built yet; use 'constant'"},
+      {"environment: { ramp: 1 }", "s:1:22: error: 'ramp' must be a map, found '1'"},
+      {"environment: { ramp: { cloudyness: 1 } }",
+       "s:1:24: error: unknown key 'cloudyness' in 'ramp'; did you mean 'cloudiness'?"},
+      {"environment: { ramp: { cloudiness: 1.5 } }", "s:1:36: error: 'cloudiness' must be 0 to 1, found 1.5"},
+      {"environment: { exr: {} }",
+       "s:1:21: error: 'exr' names no file; write exr: sky.exr, or exr: { path: sky.exr, rotation: 90 }"},
+      {"environment: { constant: 1, exr: a.exr }",
+       "s:1:29: error: an environment is of one kind, and 'constant' is given already"},
+      {"phase: { silver_lining: { in_s: 1 } }",
+       "s:1:33: error: 'in_s' must be at least 0 and less than 1, found 1"},
+      {"phase: { silver_linning: {} }",
+       "s:1:10: error: unknown key 'silver_linning' in 'phase'; did you mean 'silver_lining'?"},
+      {"powder: { on: maybe }",
+       "s:1:15: error: 'on' must be true, false or auto, found text; auto leaves it to the look"},
+      {"powder: { o_sa: -1 }", "s:1:17: error: 'o_sa' must be 0 to 100, found -1"},
+      {"light_transmittance: cord",
+       "s:1:22: error: 'light_transmittance' must be one of marched, chord, found 'cord'; did you mean "
+       "'chord'?"},
+      {"emission: { grid: '' }", "s:1:13: error: 'grid' names no grid"},
+      {"octaves: { count: many }", "s:1:19: error: 'count' must be a whole number, found 'many'"},
       {"environment: { show: 1 }", "s:1:22: error: 'show' must be true or false, found '1'"},
       {"look: pretty", "s:1:7: error: 'look' must be one of physical, report, found 'pretty'"},
       {"march: { step: 0 }", "s:1:16: error: 'step' must be 0.01 to 100, found 0"}};

@@ -1,19 +1,18 @@
-// Scenes from YAML and back. Depends on base alone. Keys, defaults and units: DESIGN.md, section 1.
+// Scenes from YAML. Depends on base alone. Keys, defaults and units: scene/scene.h and DESIGN.md, section 1.
 #include "scene/scene.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 
 #include "base/error.h"
+#include "scene/degrees.h"
 
 namespace nephele {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 // Products of two such numbers stay finite in the renderer's single precision (3.4e38).
 constexpr double kLargest = 1e15;
 constexpr Range kCoordinate{-kLargest, kLargest};
@@ -24,7 +23,10 @@ constexpr Range kAsymmetry{-1.0, 1.0, true, true};
 constexpr Range kStepVoxels{0.01, 100.0};
 constexpr double kMostOctaves = 16.0;
 constexpr Range kOctaveCount{0.0, kMostOctaves};
-// kMaxLights of shaders/shared/parameters.glsl: the renderer's parameters hold so many.
+constexpr Range kLobe{0.0, 1.0, false, true};
+constexpr Range kPowderStrength{0.0,
+                                100.0};  // beyond it, a hundredth of the densest voxel's density is dense
+constexpr Range kTurn{-360.0, 360.0};
 
 std::array<double, 3> arrayOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 glm::dvec3 vectorOf(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
@@ -80,15 +82,66 @@ Medium readMedium(const yaml::Node& node, Diagnostics& out) {
   return medium;
 }
 
+/// Reads `on: true | false | auto` of a term's map; a map without it switches the term on.
+Switch readSwitch(yaml::MapReader& reader, Diagnostics& out) {
+  const yaml::NodePtr node = reader.find("on");
+  if (!node) return true;
+  if (node->kind == yaml::Kind::scalar && node->scalar == "auto") return std::nullopt;
+  if (node->kind == yaml::Kind::scalar && (node->scalar == "true" || node->scalar == "false"))
+    return node->scalar == "true";
+  out.add(node->where, "'on' must be true, false or auto, found " + yaml::describe(*node),
+          "auto leaves it to the look");
+  return std::nullopt;
+}
+
+SilverLining readPhase(const yaml::Node& node, Diagnostics& out) {
+  yaml::MapReader reader(node, "'phase'", out);
+  SilverLining silver;
+  if (const yaml::NodePtr inner = reader.find("silver_lining")) {
+    yaml::MapReader lobes(*inner, "'silver_lining'", out);
+    silver.on = readSwitch(lobes, out);
+    silver.inS = lobes.number("in_s", silver.inS, kLobe);
+    silver.outS = lobes.number("out_s", silver.outS, kLobe);
+    silver.blend = lobes.number("blend", silver.blend, kUnit);
+    lobes.finish();
+  }
+  reader.finish();
+  return silver;
+}
+
+Powder readPowder(const yaml::Node& node, Diagnostics& out) {
+  yaml::MapReader reader(node, "'powder'", out);
+  Powder powder;
+  powder.on = readSwitch(reader, out);
+  powder.oSa = reader.number("o_sa", powder.oSa, kPowderStrength);
+  reader.finish();
+  return powder;
+}
+
 Octaves readOctaves(const yaml::Node& node, Diagnostics& out) {
   yaml::MapReader reader(node, "'octaves'", out);
   Octaves octaves;
-  octaves.count = static_cast<int>(reader.integer("count", octaves.count, kOctaveCount));
+  const yaml::NodePtr count = reader.find("count");
+  if (count && !(count->kind == yaml::Kind::scalar && count->scalar == "auto"))
+    if (const auto read = yaml::readInteger(*count, "'count'", kOctaveCount, out))
+      octaves.count = static_cast<int>(*read);
   octaves.a = reader.number("a", octaves.a, kUnit);
   octaves.b = reader.number("b", octaves.b, kUnit);
   octaves.c = reader.number("c", octaves.c, kUnit);
   reader.finish();
   return octaves;
+}
+
+Emission readEmission(const yaml::Node& node, Diagnostics& out) {
+  yaml::MapReader reader(node, "'emission'", out);
+  Emission emission;
+  emission.on = readSwitch(reader, out);
+  emission.scale = reader.number("scale", emission.scale, kAmount);
+  emission.temperatureScale = reader.number("temperature_scale", emission.temperatureScale, kAmount);
+  emission.grid = reader.text("grid", emission.grid);
+  reader.finish();
+  if (emission.grid.empty()) out.add(reader.where("grid"), "'grid' names no grid");
+  return emission;
 }
 
 Sun readSun(const yaml::Node& node, Diagnostics& out) {
@@ -139,15 +192,61 @@ std::vector<Light> readLights(const yaml::Node& node, Diagnostics& out) {
   return lights;
 }
 
+SkyRamp readRamp(const yaml::Node& node, Diagnostics& out) {
+  yaml::MapReader reader(node, "'ramp'", out);
+  SkyRamp ramp;
+  ramp.ground = reader.numberOrRgb("ground", ramp.ground, kAmount);
+  ramp.horizon = reader.numberOrRgb("horizon", ramp.horizon, kAmount);
+  ramp.zenith = reader.numberOrRgb("zenith", ramp.zenith, kAmount);
+  ramp.cloudiness = reader.number("cloudiness", ramp.cloudiness, kUnit);
+  ramp.intensity = reader.number("intensity", ramp.intensity, kAmount);
+  reader.finish();
+  return ramp;
+}
+
+/// `path` as a file that lies in the folder of `where` gives it; absolute ones stay.
+std::string besideFile(const std::string& path, const SourceLocation& where) {
+  return (std::filesystem::path(where.file).parent_path() / path).lexically_normal().string();
+}
+
+/// exr: PATH, or exr: { path: PATH, rotation: DEGREES, intensity: FACTOR }.
+LatLong readExrEnvironment(const yaml::Node& node, Diagnostics& out) {
+  LatLong exr;
+  if (node.kind == yaml::Kind::scalar) {
+    exr.path = node.scalar;
+  } else {
+    yaml::MapReader reader(node, "'exr'", out);
+    exr.path = reader.text("path", "");
+    exr.rotation = reader.number("rotation", 0.0, kTurn) * kRadiansPerDegree;
+    exr.intensity = reader.number("intensity", exr.intensity, kAmount);
+    reader.finish();
+  }
+  if (exr.path.empty())
+    out.add(node.where, "'exr' names no file", "write exr: sky.exr, or exr: { path: sky.exr, rotation: 90 }");
+  else
+    exr.path = besideFile(exr.path, node.where);
+  return exr;
+}
+
 Environment readEnvironment(const yaml::Node& node, Diagnostics& out) {
+  using Kind = Environment::Kind;
   yaml::MapReader reader(node, "'environment'", out);
   Environment environment;
-  environment.constant = reader.numberOrRgb("constant", environment.constant, kAmount);
+  std::string given;  // the first kind found
+  const auto take = [&](Kind kind) {
+    const std::string name = nameOf(kind);
+    if (!reader.has(name)) return reader.find(name);
+    if (!given.empty())
+      out.add(reader.where(name), "an environment is of one kind, and '" + given + "' is given already");
+    given = name;
+    environment.kind = kind;
+    return reader.find(name);
+  };
+  if (take(Kind::constant))
+    environment.constant = reader.numberOrRgb("constant", environment.constant, kAmount);
+  if (const yaml::NodePtr ramp = take(Kind::ramp)) environment.ramp = readRamp(*ramp, out);
+  if (const yaml::NodePtr exr = take(Kind::exr)) environment.exr = readExrEnvironment(*exr, out);
   environment.show = reader.boolean("show", environment.show);
-  for (const char* later : {"ramp", "exr"})
-    if (reader.find(later))
-      out.add(reader.where(later), "an environment by '" + std::string(later) + "' is not built yet",
-              "use 'constant'");
   reader.finish();
   return environment;
 }
@@ -171,65 +270,23 @@ MarchSettings readMarch(const yaml::Node& node, Diagnostics& out) {
   return march;
 }
 
-/// The shortest text that reads back to the same number.
-std::string shortest(double value) {
-  char text[32];  // the longest double takes 24 characters
-  const auto result = std::to_chars(text, text + sizeof text, value);
-  return std::string(text, result.ptr);
-}
-
-std::string listOf(const std::array<double, 3>& values) {
-  return std::string("[") + shortest(values[0]) + ", " + shortest(values[1]) + ", " + shortest(values[2]) +
-         "]";
-}
-
-std::string listOf(const glm::dvec3& v) { return listOf(arrayOf(v)); }
-
-/// Degrees that readCamera turns into `radians` to the last bit, where such exist; else the nearest.
-double degreesOf(double radians) {
-  double nearest = radians / kRadiansPerDegree;
-  const double low = std::nextafter(nearest, 0.0), high = std::nextafter(nearest, 2.0 * nearest);
-  for (const double candidate : {low, high})
-    if (candidate * kRadiansPerDegree == radians) nearest = candidate;
-  // Of all degrees that give these bits, the one that a person would have typed.
-  constexpr double kTypedDigits = 1e10;
-  const double typed = std::round(nearest * kTypedDigits) / kTypedDigits;
-  return typed * kRadiansPerDegree == radians ? typed : nearest;
-}
-
-std::string textOf(const Light& light) {
-  if (const Sun* sun = std::get_if<Sun>(&light))
-    return "  - sun: { to_light: " + listOf(sun->toLight) + ", irradiance: " + listOf(sun->irradiance) +
-           " }\n";
-  const PointLight& point = std::get<PointLight>(light);
-  return "  - point: { position: " + listOf(point.position) + ", intensity: " + listOf(point.intensity) +
-         " }\n";
-}
-
-std::string textOf(const std::vector<Light>& lights) {
-  if (lights.empty()) return "lights: []\n";
-  std::string text =
-      "# Sun: irradiance on a plane that faces it, to_light from the cloud to it. Point: intensity per "
-      "steradian.\n"
-      "lights:\n";
-  for (const Light& light : lights) text += textOf(light);
-  return text;
-}
-
-std::string textOf(const Camera& camera, bool upGiven) {
-  return "# Lengths in world units; fov: full vertical angle in degrees.\ncamera: { position: " +
-         listOf(camera.position) + ", target: " + listOf(camera.target) +
-         (upGiven ? ", up: " + listOf(camera.up) : std::string()) +
-         ", fov: " + shortest(degreesOf(camera.fov)) + " }\n";
-}
-
 }  // namespace
+
+Emission::Emission() : grid("temperature") {}
 
 Scene readScene(const yaml::Node& node, Diagnostics& out) {
   yaml::MapReader reader(node, "the scene", out);
   Scene scene;
   if (const auto camera = reader.find("camera")) scene.camera = readCamera(*camera, scene.cameraUpGiven, out);
   if (const auto medium = reader.find("medium")) scene.medium = readMedium(*medium, out);
+  if (const auto phase = reader.find("phase")) scene.silverLining = readPhase(*phase, out);
+  if (const auto powder = reader.find("powder")) scene.powder = readPowder(*powder, out);
+  const std::string transmittance =
+      reader.choice("light_transmittance", nameOf(scene.lightTransmittance),
+                    {nameOf(LightTransmittance::marched), nameOf(LightTransmittance::chord)});
+  scene.lightTransmittance = transmittance == nameOf(LightTransmittance::chord) ? LightTransmittance::chord
+                                                                                : LightTransmittance::marched;
+  if (const auto emission = reader.find("emission")) scene.emission = readEmission(*emission, out);
   if (const auto octaves = reader.find("octaves")) scene.octaves = readOctaves(*octaves, out);
   if (const auto lights = reader.find("lights")) scene.lights = readLights(*lights, out);
   if (const auto environment = reader.find("environment"))
@@ -257,30 +314,22 @@ Scene loadScene(const std::string& path) {
   return scene;
 }
 
-std::string writeScene(const Scene& scene) {
-  std::string text;
-  if (scene.camera) text += textOf(*scene.camera, scene.cameraUpGiven);
-  if (scene.medium)
-    text += "# Per unit density per world unit; g: Henyey-Greenstein asymmetry.\nmedium: { sigma_s: " +
-            listOf(scene.medium->sigmaS) + ", sigma_a: " + listOf(scene.medium->sigmaA) +
-            ", g: " + shortest(scene.medium->g) + " }\n";
-  text += "# Orders of scattering beyond the first, and their factors.\noctaves: { count: " +
-          std::to_string(scene.octaves.count) + ", a: " + shortest(scene.octaves.a) +
-          ", b: " + shortest(scene.octaves.b) + ", c: " + shortest(scene.octaves.c) + " }\n";
-  text += textOf(scene.lights);
-  text +=
-      "# Uniform radiance from all around.\nenvironment: { constant: " + listOf(scene.environment.constant) +
-      ", show: " + (scene.environment.show ? "true" : "false") + " }\n";
-  text += "# Behind window and PNG only, linear Rec.709: no light.\nbackground: { bottom: " +
-          listOf(scene.backdrop.bottom) + ", top: " + listOf(scene.backdrop.top) + " }\n";
-  text += "look: " + nameOf(scene.look) + "\n";
-  text +=
-      "# Steps in voxels; each step towards a light is shadow_growth times the one before.\nmarch: { step: " +
-      shortest(scene.march.stepVoxels) + ", shadow_step: " + shortest(scene.march.shadowStepVoxels) +
-      ", shadow_growth: " + shortest(scene.march.shadowGrowth) + " }\n";
-  return text;
+std::string nameOf(Look look) { return look == Look::report ? "report" : "physical"; }
+
+std::string nameOf(LightTransmittance transmittance) {
+  return transmittance == LightTransmittance::chord ? "chord" : "marched";
 }
 
-std::string nameOf(Look look) { return look == Look::report ? "report" : "physical"; }
+std::string nameOf(Environment::Kind kind) {
+  switch (kind) {
+    case Environment::Kind::ramp:
+      return "ramp";
+    case Environment::Kind::exr:
+      return "exr";
+    case Environment::Kind::constant:
+      break;
+  }
+  return "constant";
+}
 
 }  // namespace nephele
