@@ -49,6 +49,15 @@ void perlinLattice(benchmark::State& state) {
 }
 BENCHMARK(perlinLattice)->Arg(1)->Arg(5)->ArgName("octaves");
 
+/// What turning gradients cost: only at lattice corners.
+void evolvingLattice(benchmark::State& state) {
+  auto list = octaves(state.range(0));
+  for (NoiseOctave& octave : list) octave.turn = turnAt(0.3);
+  overLattice(state,
+              [&](const Lattice& at, float* v) { addNoiseOnLattice(list.data(), list.size(), at, v); });
+}
+BENCHMARK(evolvingLattice)->Arg(1)->Arg(5)->ArgName("octaves");
+
 void worleyLattice(benchmark::State& state) {
   const WorleyNoise noise{kFeature, 1.0f, 1u, 0, state.range(0) == 1 ? WorleyOutput::f1 : WorleyOutput::f2};
   overLattice(state, [&](const Lattice& at, float* v) { worleyOnLattice(noise, at, v); });

@@ -16,12 +16,14 @@ namespace {
 constexpr double kValueSlope = 1.875 * 2.0;
 
 WorleyNoise worleyOf(const NoiseOctave& octave) {
-  return {octave.cellSize, 1.0f, octave.seed, octave.period, WorleyOutput::f1};
+  return {octave.cellSize, 1.0f, octave.seed, octave.period, WorleyOutput::f1, octave.turn};
 }
 
 float valueNoiseAt(const NoiseOctave& octave, const CellPlace& x, const CellPlace& y, const CellPlace& z) {
-  return shared::valueNoise({x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction}, octave.period,
-                            octave.seed);
+  const glm::ivec3 cell(x.cell, y.cell, z.cell);
+  const glm::vec3 f(x.fraction, y.fraction, z.fraction);
+  return octave.turn.evolves ? shared::turningValue(cell, f, octave.period, octave.seed, octave.turn.at)
+                             : shared::valueNoise(cell, f, octave.period, octave.seed);
 }
 
 CellPlace moved(const CellPlace& start, float by) {

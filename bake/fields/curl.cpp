@@ -43,12 +43,16 @@ class Curl final : public Field {
   static constexpr int kLength = 3;
 
  private:
+  static glm::vec3 slopeInCell(const NoiseOctave& octave, const glm::ivec3& cell, const glm::vec3& f) {
+    return octave.turn.evolves ? shared::turningSlope(cell, f, octave.period, octave.seed, octave.turn.at)
+                               : shared::perlinSlope(cell, f, octave.period, octave.seed);
+  }
+
   float valueAt(const glm::ivec3& cell, const glm::vec3& f) const {
     // Each component is a difference of two slopes.
     constexpr float kScale = float(0.5 / kPerlinSlope);
     std::array<glm::vec3, 3> slope;
-    for (size_t axis = 0; axis < 3; ++axis)
-      slope[axis] = shared::perlinSlope(cell, f, potential_[axis].period, potential_[axis].seed);
+    for (size_t axis = 0; axis < 3; ++axis) slope[axis] = slopeInCell(potential_[axis], cell, f);
     const glm::vec3 curl =
         kScale * glm::vec3(slope[2].y - slope[1].z, slope[0].z - slope[2].x, slope[1].x - slope[0].y);
     if (component_ != kLength) return curl[component_];
@@ -58,6 +62,10 @@ class Curl final : public Field {
   std::array<NoiseOctave, 3> potential_;
   int component_;
 };
+
+Motion motionOf(const Arguments& a) {
+  return {double(a.integer("period")) * a.number("cell_size"), a.vector("scroll"), {}, a.number("evolve")};
+}
 
 }  // namespace
 
@@ -75,16 +83,20 @@ FieldRow curlRow() {
        kCellSize,
        kSeed,
        kPeriod,
-       kScroll},
+       kScroll,
+       kEvolve},
       [](const Arguments& a, const BuildContext& context) -> FieldPtr {
         const std::string& name = a.choice("component");
         const uint32_t seed = shared::hashCell({int32_t(uint32_t(a.integer("seed"))), 3, 0}, context.seed);
+        const OctavePlace place = octavePlace(motionOf(a), 0, context);
         std::array<NoiseOctave, 3> potential;
         for (int axis = 0; axis < 3; ++axis)
-          potential[size_t(axis)] = {a.number("cell_size"), 1.0f, shared::seedApart(seed, axis),
-                                     int(a.integer("period")), context.time * a.vector("scroll")};
+          potential[size_t(axis)] = {a.number("cell_size"),    1.0f,         shared::seedApart(seed, axis),
+                                     int(a.integer("period")), place.offset, place.turn};
         return std::make_shared<Curl>(potential, name == "length" ? Curl::kLength : name[0] - 'x');
-      }};
+      },
+      nullptr,
+      motionOf};
 }
 
 }  // namespace nephele

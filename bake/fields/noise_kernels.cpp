@@ -30,11 +30,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET != HWY_SCALAR
 
-// The same constants as in shared::hashGradient, which NoiseKernels.AgreeWithTheDefinition holds them to.
+// The same constants as in shared::hashCorner, which NoiseKernels.AgreeWithTheDefinition holds them to.
 constexpr uint32_t kHashX = 0x9e3779b1u, kHashY = 0x85ebca77u, kHashZ = 0xc2b2ae3du;
 constexpr uint32_t kMix = 0x2c1b3c6du;
 
-// The gradient's number in the top four bits.
+// shared::hashCorner of a key: the gradient's number in the top four bits, its turn in the next two.
 template <class DU, class VU = hn::Vec<DU>>
 HWY_INLINE VU mixHash(DU du, VU h) {
   return hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(du, kMix));
@@ -74,12 +74,28 @@ struct Choice {
   }
 };
 
-// Gradients ±1 or 0 along each axis.
+// The two components ±1 of a gradient in its plane, turned as shared::turnedGradient does.
 template <class D, class V, class VU>
-HWY_INLINE void gradients(D d, VU hash, V& gx, V& gy, V& gz) {
+HWY_INLINE void turnInPlane(D d, VU hash, const Turn& turn, V& su, V& sv) {
+  const hn::RebindToUnsigned<D> du;
+  constexpr uint32_t kTwice = 0x04000000u;  // shared::turnOf reads the bits below the gradient's number
+  const auto twice = hn::RebindMask(d, hn::Eq(hn::And(hash, hn::Set(du, kTwice)), hn::Set(du, kTwice)));
+  const VU back = hn::And(hn::ShiftLeft<4>(hash), hn::Set(du, 0x80000000u));
+  const V cosine = hn::IfThenElse(twice, hn::Set(d, turn.at.z), hn::Set(d, turn.at.x));
+  const V sine =
+      hn::Xor(hn::IfThenElse(twice, hn::Set(d, turn.at.w), hn::Set(d, turn.at.y)), hn::BitCast(d, back));
+  const V u = hn::Sub(hn::Mul(su, cosine), hn::Mul(sv, sine));
+  sv = hn::Add(hn::Mul(sv, cosine), hn::Mul(su, sine));
+  su = u;
+}
+
+// Gradients along each axis: ±1 or 0, or turned.
+template <class D, class V, class VU>
+HWY_INLINE void gradients(D d, VU hash, const Turn& turn, V& gx, V& gy, V& gz) {
   const Choice<D> choice(d, hash);
   const V one = hn::Set(d, 1.0f);
-  const V su = hn::Xor(one, hn::BitCast(d, choice.signU)), sv = hn::Xor(one, hn::BitCast(d, choice.signV));
+  V su = hn::Xor(one, hn::BitCast(d, choice.signU)), sv = hn::Xor(one, hn::BitCast(d, choice.signV));
+  if (turn.evolves) turnInPlane(d, hash, turn, su, sv);
   // u and v never fall to one axis.
   gx = hn::IfThenElse(choice.uIsX, su, hn::IfThenElseZero(choice.vIsX, sv));
   gy = hn::IfThenElse(choice.uIsX, hn::IfThenElseZero(choice.vIsY, sv), su);
@@ -151,7 +167,7 @@ HWY_INLINE void gather(const NoiseOctave& octave, const BlockAxis& ax, const Blo
       const uint32_t hy =
           uint32_t(shared::foldCell(int32_t(uint32_t(ay.first) + uint32_t(y)), octave.period)) * kHashY;
       hn::Vec<decltype(d)> gx, gy, gz;
-      gradients(d, mixHash(du, hn::Xor(hz, hn::Set(du, hx ^ hy))), gx, gy, gz);
+      gradients(d, mixHash(du, hn::Xor(hz, hn::Set(du, hx ^ hy))), octave.turn, gx, gy, gz);
       hn::Store(gx, d, out.x[x][y]);
       hn::Store(gy, d, out.y[x][y]);
       hn::Store(gz, d, out.z[x][y]);
@@ -199,7 +215,7 @@ HWY_INLINE void addGroup(const NoiseOctave& octave, const BlockAxis& ax, const B
   const auto toLower = hn::SetTableIndices(d, lower), toUpper = hn::SetTableIndices(d, upper);
   const V dz0 = loadPlanes(az.place + z0, az.place + z0), dz1 = hn::Sub(dz0, hn::Set(d, 1.0f));
   const V sz = loadPlanes(az.weight + z0, az.weight + z0);
-  const V weight = hn::Set(d, octave.weight * shared::kPerlinScale);
+  const V weight = hn::Set(d, octave.weight * noiseScale(octave));
 
   for (size_t i = 0; i < size_t(kBlockEdge); i += kPlanes) {
     const int x = ax.cell[i], xNext = ax.cell[i + kPlanes - 1];
@@ -235,7 +251,12 @@ void addBlock(const NoiseOctave& octave, const BlockAxis& ax, const BlockAxis& a
   for (size_t group = 0; group < kGroups; ++group) addGroup(octave, ax, ay, az, group, sums);
 }
 
-// A corner's gradient times the place relative to it, as shared::gradientDot.
+HWY_INLINE glm::vec3 plainGradient(uint32_t hash) {
+  const uint32_t number = hash >> 28;
+  return {kGradientX[number], kGradientY[number], kGradientZ[number]};
+}
+
+// A corner's gradient times the place relative to it, as shared::gradientDot; and one gradient alone.
 #if HWY_MAX_BYTES >= 64
 // Sixteen lanes hold the whole table of gradients. A product with 0 adds ±0, which changes no sum that is not
 // 0.
@@ -249,6 +270,7 @@ struct GradientTable {
     return hn::Add(hn::Add(hn::Mul(hn::TableLookupLanes(x, h), dx), hn::Mul(hn::TableLookupLanes(y, h), dy)),
                    hn::Mul(hn::TableLookupLanes(z, h), dz));
   }
+  HWY_INLINE glm::vec3 of(uint32_t hash) const { return plainGradient(hash); }
 };
 #else
 struct GradientTable {
@@ -260,13 +282,27 @@ struct GradientTable {
     const V v = hn::IfThenElse(choice.vIsY, dy, hn::IfThenElse(choice.vIsX, dx, dz));
     return hn::Add(hn::Xor(u, hn::BitCast(d, choice.signU)), hn::Xor(v, hn::BitCast(d, choice.signV)));
   }
+  HWY_INLINE glm::vec3 of(uint32_t hash) const { return plainGradient(hash); }
 };
 #endif
+
+// The same for gradients that turn.
+struct TurnedGradients {
+  const Turn& turn;
+  template <class V, class VU>
+  HWY_INLINE V dot(VU hash, V dx, V dy, V dz) const {
+    const hn::DFromV<V> d;
+    V gx, gy, gz;
+    gradients(d, hash, turn, gx, gy, gz);
+    return hn::Add(hn::Add(hn::Mul(gx, dx), hn::Mul(gy, dy)), hn::Mul(gz, dz));
+  }
+  HWY_INLINE glm::vec3 of(uint32_t hash) const { return shared::turnedGradient(hash, turn.at); }
+};
 
 // Mixes a cell's corners; dot(x, y, z, dx, dy, dz) is the product at corner (x, y, z), each 0 or 1, for the
 // place relative to it.
 template <class D, class V, class Dot>
-HWY_INLINE V mixCell(D d, V x0, V y0, V z0, const Dot& dot) {
+HWY_INLINE V mixCell(D d, V x0, V y0, V z0, float scale, const Dot& dot) {
   const V one = hn::Set(d, 1.0f);
   const V x1 = hn::Sub(x0, one), y1 = hn::Sub(y0, one), z1 = hn::Sub(z0, one);
   const V sx = fade(d, x0), sy = fade(d, y0), sz = fade(d, z0);
@@ -274,12 +310,12 @@ HWY_INLINE V mixCell(D d, V x0, V y0, V z0, const Dot& dot) {
                     mix(dot(0, 1, 0, x0, y1, z0), dot(1, 1, 0, x1, y1, z0), sx), sy);
   const V high = mix(mix(dot(0, 0, 1, x0, y0, z1), dot(1, 0, 1, x1, y0, z1), sx),
                      mix(dot(0, 1, 1, x0, y1, z1), dot(1, 1, 1, x1, y1, z1), sx), sy);
-  return hn::Mul(mix(low, high, sz), hn::Set(d, shared::kPerlinScale));
+  return hn::Mul(mix(low, high, sz), hn::Set(d, scale));
 }
 
 // One vector of points, given as places relative to a first cell.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V noiseAt(D d, const GradientTable& table, V x, V y, V z, uint32_t cellX, uint32_t cellY,
+template <class D, class Gradients, class V = hn::Vec<D>>
+HWY_INLINE V noiseAt(D d, const Gradients& table, float scale, V x, V y, V z, uint32_t cellX, uint32_t cellY,
                      uint32_t cellZ, uint32_t seed) {
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
@@ -291,11 +327,13 @@ HWY_INLINE V noiseAt(D d, const GradientTable& table, V x, V y, V z, uint32_t ce
   if (hn::AllFalse(d, strays)) {  // all in one cell, as coarse octaves mostly are: its gradients once
     const uint32_t bx = cellX + uint32_t(int32_t(ax)), by = cellY + uint32_t(int32_t(ay)),
                    bz = cellZ + uint32_t(int32_t(az));
-    return mixCell(d, x0, y0, z0, [&](uint32_t ox, uint32_t oy, uint32_t oz, V dx, V dy, V dz) HWY_ATTR {
-      const uint32_t h = shared::hashGradient({int32_t(bx + ox), int32_t(by + oy), int32_t(bz + oz)}, seed);
-      return hn::Add(hn::Add(hn::Mul(hn::Set(d, kGradientX[h]), dx), hn::Mul(hn::Set(d, kGradientY[h]), dy)),
-                     hn::Mul(hn::Set(d, kGradientZ[h]), dz));
-    });
+    return mixCell(
+        d, x0, y0, z0, scale, [&](uint32_t ox, uint32_t oy, uint32_t oz, V dx, V dy, V dz) HWY_ATTR {
+          const glm::vec3 g =
+              table.of(shared::hashCorner({int32_t(bx + ox), int32_t(by + oy), int32_t(bz + oz)}, seed));
+          return hn::Add(hn::Add(hn::Mul(hn::Set(d, g.x), dx), hn::Mul(hn::Set(d, g.y), dy)),
+                         hn::Mul(hn::Set(d, g.z), dz));
+        });
   }
   const auto hashed = [&](V whole, uint32_t cell, uint32_t prime) HWY_ATTR {
     const auto at = hn::Add(hn::BitCast(du, hn::ConvertTo(di, whole)), hn::Set(du, cell));
@@ -310,16 +348,18 @@ HWY_INLINE V noiseAt(D d, const GradientTable& table, V x, V y, V z, uint32_t ce
   const VU hz[2] = {hn::Xor(plainZ, seeds), hn::Xor(hn::Add(plainZ, hn::Set(du, kHashZ)), seeds)};
   const VU hyz[4] = {hn::Xor(hy[0], hz[0]), hn::Xor(hy[1], hz[0]), hn::Xor(hy[0], hz[1]),
                      hn::Xor(hy[1], hz[1])};
-  return mixCell(d, x0, y0, z0, [&](uint32_t ox, uint32_t oy, uint32_t oz, V dx, V dy, V dz) HWY_ATTR {
+  return mixCell(d, x0, y0, z0, scale, [&](uint32_t ox, uint32_t oy, uint32_t oz, V dx, V dy, V dz) HWY_ATTR {
     return table.dot(mixHash(du, hn::Xor(hx[ox], hyz[oy + 2 * oz])), dx, dy, dz);
   });
 }
 
 // Points from `first` on whose number is a multiple of the vector's lanes; returns how many were done.
-size_t addAtPoints(const NoiseOctave& octave, const Points& points, float* sums) {
+template <class Gradients>
+HWY_INLINE size_t addWith(const Gradients& table, const NoiseOctave& octave, const Points& points,
+                          float* sums) {
   const Tag d;
   const size_t lanes = hn::Lanes(d);
-  const GradientTable table;
+  const float scale = noiseScale(octave);
   const CellPlace px = cellPlace(points.origin.x - octave.offset.x, octave.cellSize),
                   py = cellPlace(points.origin.y - octave.offset.y, octave.cellSize),
                   pz = cellPlace(points.origin.z - octave.offset.z, octave.cellSize);
@@ -329,11 +369,16 @@ size_t addAtPoints(const NoiseOctave& octave, const Points& points, float* sums)
     const auto x = hn::Add(hn::Set(d, px.fraction), hn::Mul(hn::LoadU(d, points.x + n), frequency));
     const auto y = hn::Add(hn::Set(d, py.fraction), hn::Mul(hn::LoadU(d, points.y + n), frequency));
     const auto z = hn::Add(hn::Set(d, pz.fraction), hn::Mul(hn::LoadU(d, points.z + n), frequency));
-    const auto noise =
-        noiseAt(d, table, x, y, z, uint32_t(px.cell), uint32_t(py.cell), uint32_t(pz.cell), octave.seed);
+    const auto noise = noiseAt(d, table, scale, x, y, z, uint32_t(px.cell), uint32_t(py.cell),
+                               uint32_t(pz.cell), octave.seed);
     hn::StoreU(hn::Add(hn::LoadU(d, sums + n), hn::Mul(weight, noise)), d, sums + n);
   }
   return n;
+}
+
+size_t addAtPoints(const NoiseOctave& octave, const Points& points, float* sums) {
+  if (octave.turn.evolves) return addWith(TurnedGradients{octave.turn}, octave, points, sums);
+  return addWith(GradientTable(), octave, points, sums);
 }
 
 #else  // a machine without SSSE3: the same operations, one voxel at a time
@@ -375,8 +420,8 @@ void addByDefinition(const NoiseOctave& octave, const Points& points, size_t fir
     const float z = pz.fraction + points.z[n] * frequency;
     const float wx = std::floor(x), wy = std::floor(y), wz = std::floor(z);
     sums[n] += octave.weight *
-               shared::perlinNoise({cellAfter(px.cell, wx), cellAfter(py.cell, wy), cellAfter(pz.cell, wz)},
-                                   {x - wx, y - wy, z - wz}, octave.period, octave.seed);
+               noiseInCell(octave, {cellAfter(px.cell, wx), cellAfter(py.cell, wy), cellAfter(pz.cell, wz)},
+                           {x - wx, y - wy, z - wz});
   }
 }
 

@@ -20,14 +20,15 @@ void setAxis(double origin, double cellSize, float step, BlockAxis& axis) {
 
 float mix(float a, float b, float t) { return a + t * (b - a); }
 
-/// The gradient that shared::gradientDot uses for a hash.
+/// The gradient of a lattice point.
 glm::vec3 gradientOf(const NoiseOctave& octave, int32_t x, int32_t y, int32_t z) {
   const uint32_t hash =
-      shared::hashGradient({shared::foldCell(x, octave.period), shared::foldCell(y, octave.period),
-                            shared::foldCell(z, octave.period)},
-                           octave.seed);
-  return {shared::gradientDot(hash, 1, 0, 0), shared::gradientDot(hash, 0, 1, 0),
-          shared::gradientDot(hash, 0, 0, 1)};
+      shared::hashCorner({shared::foldCell(x, octave.period), shared::foldCell(y, octave.period),
+                          shared::foldCell(z, octave.period)},
+                         octave.seed);
+  if (octave.turn.evolves) return shared::turnedGradient(hash, octave.turn.at);
+  const uint32_t gradient = hash >> 28;
+  return {kGradientX[gradient], kGradientY[gradient], kGradientZ[gradient]};
 }
 
 /// a + b · (z − k) at one corner k along z, mixed over the four corners of x and y.
@@ -50,7 +51,7 @@ void mixCorners(const NoiseOctave& octave, const BlockAxis& ax, int i, const Blo
 
 void addBlock(const NoiseOctave& octave, const BlockAxis& ax, const BlockAxis& ay, const BlockAxis& az,
               float* sums) {
-  const float weight = octave.weight * shared::kPerlinScale;
+  const float weight = octave.weight * noiseScale(octave);
   for (int i = 0; i < kBlockEdge; ++i)
     for (int j = 0; j < kBlockEdge; ++j)
       for (int k = 0; k < kBlockEdge; ++k) {

@@ -76,14 +76,26 @@ uint32_t mixedSeed(const Arguments& a, const BuildContext& context, int32_t fami
   return shared::hashCell({int32_t(uint32_t(a.integer("seed"))), family, 0}, context.seed);
 }
 
+/// The parameters that rows of noise share; the seed is left to the caller. Rows of one octave lack those of
+/// many.
+Fractal fractalOf(const Arguments& a, int64_t octaves) {
+  Fractal fractal{a.number("cell_size"), octaves, 2.0, 0.5, a.integer("period"), 0, a.vector("scroll")};
+  fractal.evolve = a.number("evolve");
+  if (octaves == 1) return fractal;
+  fractal.lacunarity = a.number("lacunarity");
+  fractal.gain = a.number("gain");
+  fractal.fineScroll = a.vector("fine_scroll");
+  return fractal;
+}
+
+Motion singleMotion(const Arguments& a) { return fractalOf(a, 1).motion(); }
+Motion fractalMotion(const Arguments& a) { return fractalOf(a, a.integer("octaves")).motion(); }
+
 std::shared_ptr<FractalField> makeFractal(Basis basis, Fold fold, const Arguments& a,
                                           const BuildContext& context, int64_t octaves, const char* field) {
-  const bool single = octaves == 1;
-  const double lacunarity = single ? 2.0 : a.number("lacunarity"), gain = single ? 0.5 : a.number("gain");
-  std::vector<NoiseOctave> list = fbmOctaves(
-      {a.number("cell_size"), octaves, lacunarity, gain, a.integer("period"), mixedSeed(a, context, 0),
-       a.vector("scroll"), single ? glm::dvec3(0.0) : a.vector("fine_scroll")},
-      context, field);
+  Fractal fractal = fractalOf(a, octaves);
+  fractal.seed = mixedSeed(a, context, 0);
+  std::vector<NoiseOctave> list = fbmOctaves(fractal, context, field);
   double kept = 0.0;
   for (const NoiseOctave& octave : list) kept += double(octave.weight);
   const double level = octaves == 0 ? 0.0 : std::max(0.0, 1.0 - kept) * meanOf(basis, fold);
@@ -110,12 +122,13 @@ FieldRow fractalRow(std::string_view name, std::string_view sentence) {
   static constexpr const char* kNames[] = {"fbm", "ridged", "billow"};
   return {name,
           sentence,
-          {kBasis, kCellSize, kOctaves, kLacunarity, kGain, kSeed, kPeriod, kScroll, kFineScroll},
+          {kBasis, kCellSize, kOctaves, kLacunarity, kGain, kSeed, kPeriod, kScroll, kFineScroll, kEvolve},
           [](const Arguments& a, const BuildContext& context) -> FieldPtr {
             return makeFractal(basisOf(a.choice("basis")), kFold, a, context, a.integer("octaves"),
                                kNames[int(kFold)]);
           },
-          validatePeriod};
+          validatePeriod,
+          fractalMotion};
 }
 
 /// Distances of cellular noise.
@@ -149,10 +162,11 @@ class WorleyField final : public Field {
 
 std::shared_ptr<const WorleyField> makeWorley(const Arguments& a, const BuildContext& context,
                                               WorleyOutput output) {
+  const OctavePlace place = octavePlace(singleMotion(a), 0, context);
   return std::make_shared<WorleyField>(
       WorleyNoise{a.number("cell_size"), float(a.number("jitter")), mixedSeed(a, context, 2),
-                  int(a.integer("period")), output},
-      context.time * a.vector("scroll"));
+                  int(a.integer("period")), output, place.turn},
+      place.offset);
 }
 
 /// Gradient noise and cellular noise as one, in [0, 1].
@@ -199,19 +213,23 @@ const Parameter kJitter{"jitter", ParameterType::number,
 FieldRow perlinRow() {
   return {"perlin",
           "Gradient noise in [-1, 1]: 0 at the corners of its cells, smooth between.",
-          {kCellSize, kSeed, kPeriod, kScroll},
+          {kCellSize, kSeed, kPeriod, kScroll, kEvolve},
           [](const Arguments& a, const BuildContext& context) -> FieldPtr {
             return makeFractal(Basis::perlin, Fold::plain, a, context, 1, "perlin");
-          }};
+          },
+          nullptr,
+          singleMotion};
 }
 
 FieldRow valueRow() {
   return {"value",
           "Value noise in [-1, 1]: a random value at each corner of its cells, smooth between.",
-          {kCellSize, kSeed, kPeriod, kScroll},
+          {kCellSize, kSeed, kPeriod, kScroll, kEvolve},
           [](const Arguments& a, const BuildContext& context) -> FieldPtr {
             return makeFractal(Basis::value, Fold::plain, a, context, 1, "value");
-          }};
+          },
+          nullptr,
+          singleMotion};
 }
 
 FieldRow fbmRow() {
@@ -245,14 +263,17 @@ FieldRow worleyRow() {
        kJitter,
        kSeed,
        kPeriod,
-       kScroll},
+       kScroll,
+       kEvolve},
       [](const Arguments& a, const BuildContext& context) -> FieldPtr {
         const std::string& output = a.choice("output");
         return makeWorley(a, context,
                           output == "f1"   ? WorleyOutput::f1
                           : output == "f2" ? WorleyOutput::f2
                                            : WorleyOutput::f2MinusF1);
-      }};
+      },
+      nullptr,
+      singleMotion};
 }
 
 FieldRow perlinWorleyRow() {
@@ -275,13 +296,15 @@ FieldRow perlinWorleyRow() {
        kSeed,
        kPeriod,
        kScroll,
-       kFineScroll},
+       kFineScroll,
+       kEvolve},
       [](const Arguments& a, const BuildContext& context) -> FieldPtr {
         return std::make_shared<PerlinWorley>(
             makeFractal(Basis::perlin, Fold::plain, a, context, a.integer("octaves"), "perlin_worley"),
             makeWorley(a, context, WorleyOutput::f1), a.choice("form") == "dilate", a.number("amount"));
       },
-      validatePeriod};
+      validatePeriod,
+      fractalMotion};
 }
 
 }  // namespace nephele

@@ -13,19 +13,28 @@ float noiseAt(const NoiseOctave& octave, const glm::dvec3& place) {
   const glm::dvec3 p = place - octave.offset;
   const CellPlace x = cellPlace(p.x, octave.cellSize), y = cellPlace(p.y, octave.cellSize),
                   z = cellPlace(p.z, octave.cellSize);
-  return shared::perlinNoise({x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction}, octave.period,
-                             octave.seed);
+  return noiseInCell(octave, {x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction});
 }
 
 }  // namespace
+
+float noiseScale(const NoiseOctave& octave) {
+  return octave.turn.evolves ? shared::kTurningScale : shared::kPerlinScale;
+}
+
+float noiseInCell(const NoiseOctave& octave, const glm::ivec3& cell, const glm::vec3& f) {
+  return octave.turn.evolves ? shared::turningNoise(cell, f, octave.period, octave.seed, octave.turn.at)
+                             : shared::perlinNoise(cell, f, octave.period, octave.seed);
+}
 
 double bandLimit(double cellVoxels) { return std::clamp((cellVoxels - 2.0) / 2.0, 0.0, 1.0); }
 
 Interval boundNoise(const NoiseOctave& octave, const Box& box) {
   const double weight = std::abs(double(octave.weight));
   const glm::dvec3 half = box.halfSize() / octave.cellSize;
+  const double cornerSlope = octave.turn.evolves ? kTurningCornerSlope : kPerlinCornerSlope;
   const double reach = std::min(kPerlinSlope * std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z),
-                                kPerlinCornerSlope * std::max({half.x, half.y, half.z}));
+                                cornerSlope * std::max({half.x, half.y, half.z}));
   // Float noise may differ from real noise by the rounding of its 30 operations and of a point's place in its
   // cell, where a block's offsets reach across many cells.
   constexpr double kPlaceRoom = 1e-5;
@@ -36,6 +45,10 @@ Interval boundNoise(const NoiseOctave& octave, const Box& box) {
   return both(all, {centre - room, centre + room});
 }
 
+Motion Fractal::motion() const {
+  return {double(period) * cellSize, scroll, fineScroll, evolve, octaves, lacunarity};
+}
+
 std::vector<NoiseOctave> fbmOctaves(const Fractal& fractal, const BuildContext& context, const char* field) {
   double total = 0.0, weight = 1.0;
   for (int64_t i = 0; i < fractal.octaves; ++i, weight *= fractal.gain) total += weight;
@@ -43,15 +56,16 @@ std::vector<NoiseOctave> fbmOctaves(const Fractal& fractal, const BuildContext& 
   weight = 1.0;
   double size = fractal.cellSize;
   double cells = double(fractal.period);
+  const Motion motion = fractal.motion();
   for (int64_t i = 0; i < fractal.octaves; ++i) {
     const double kept = bandLimit(size / context.voxelSize);
     if (kept < 1.0 && context.notes)
       context.notes->push_back({field, int(i), size / context.voxelSize, kept});
-    const double fineness = fractal.octaves > 1 ? double(i) / double(fractal.octaves - 1) : 0.0;
-    if (kept > 0.0)
+    if (kept > 0.0) {
+      const OctavePlace place = octavePlace(motion, i, context);
       list.push_back({size, float(weight * kept / total), shared::seedApart(fractal.seed, int(i)),
-                      int(std::lround(cells)),
-                      context.time * (fractal.scroll + fineness * fractal.fineScroll)});
+                      int(std::lround(cells)), place.offset, place.turn});
+    }
     weight *= fractal.gain;
     size /= fractal.lacunarity;
     cells *= fractal.lacunarity;

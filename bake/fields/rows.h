@@ -33,19 +33,30 @@ inline const Parameter kLacunarity{"lacunarity",
 inline const Parameter kGain{
     "gain", ParameterType::number, "How much weaker each layer is.", Value{0.5}, {0.0, 1.0, true, false}};
 
+/// Speeds and turns beyond these would leave no digit of a place or an angle.
+inline constexpr Range kSpeedRange{-1e6, 1e6, false, false};
+inline constexpr Range kEvolveRange{-1000.0, 1000.0, false, false};
+
 inline const Parameter kScroll{"scroll",
                                ParameterType::vector,
                                "Speed at which the whole pattern moves.",
                                Value{std::array<double, 3>{0, 0, 0}},
-                               kAny,
+                               kSpeedRange,
                                "world units per second"};
 inline const Parameter kFineScroll{
     "fine_scroll",
     ParameterType::vector,
     "Speed of the last octave on top of it; octaves between move by even shares.",
     Value{std::array<double, 3>{0, 0, 0}},
-    kAny,
+    kSpeedRange,
     "world units per second"};
+inline const Parameter kEvolve{
+    "evolve",
+    ParameterType::number,
+    "How fast the pattern changes in place; each finer octave is lacunarity^(2/3) faster.",
+    Value{0.0},
+    kEvolveRange,
+    "turns per second"};
 
 FieldRow perlinRow();
 FieldRow worleyRow();

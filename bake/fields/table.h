@@ -55,6 +55,21 @@ struct BandLimitNote {
   double weight = 0.0;      // 0: left out
 };
 
+/// A motion that comes round after `frames` frames, and how far it is.
+struct Loop {
+  int64_t frames = 1;  // at least 1
+  int64_t frame = 0;
+  double fps = 24.0;
+};
+
+/// What a loop makes of a parameter that did not fit it.
+struct LoopNote {
+  std::string field, parameter;
+  std::string asked, used;
+};
+
+struct Motion;
+
 /// What a field may know of the bake it is built for. Nothing else: a field is a pure function of recipe,
 /// inputs and version.
 struct BuildContext {
@@ -62,7 +77,8 @@ struct BuildContext {
   int upAxis = 2;          // 1: y, 2: z
   uint32_t seed = 0;       // the recipe's; mixed with each field's own
   std::vector<BandLimitNote>* notes = nullptr;
-  double time = 0.0;  // seconds since frame 0
+  double time = 0.0;           // seconds since frame 0
+  std::optional<Loop> loop{};  // then motion follows this in place of the time
 };
 
 /// Parameters by name, all present, all in range.
@@ -100,6 +116,8 @@ struct FieldRow {
   /// sentence. nullopt, or a null function, where all is well. Child fields are not looked at. Throws
   /// InputError on what is wrong inside a file.
   Complaint (*validate)(const Arguments&) = nullptr;
+  /// How the row's own noise moves (motion.h); a null function where it has none.
+  Motion (*motion)(const Arguments&) = nullptr;
 };
 
 /// All rows, in the order of the docs. A field whose last-named list is all that a recipe gives may be

@@ -79,6 +79,19 @@ class Warp final : public Field {
   std::array<std::vector<NoiseOctave>, 3> noise_;
 };
 
+/// The displacing noise; its seed is left to the caller.
+Fractal fractalOf(const Arguments& a) {
+  Fractal fractal{a.number("cell_size") / a.number("warp_offset"),
+                  a.integer("octaves"),
+                  2.0,
+                  0.5,
+                  a.integer("period"),
+                  0,
+                  a.vector("scroll")};
+  fractal.evolve = a.number("evolve");
+  return fractal;
+}
+
 }  // namespace
 
 FieldRow warpRow() {
@@ -98,26 +111,23 @@ FieldRow warpRow() {
         Value{int64_t{2}},
         {1.0, 16.0, false, false}},
        kSeed,
-       kScroll},
+       kPeriod,
+       kScroll,
+       kEvolve},
       [](const Arguments& a, const BuildContext& context) -> FieldPtr {
-        const double cellSize = a.number("cell_size") / a.number("warp_offset");
         const uint32_t seed = shared::hashCell({int32_t(uint32_t(a.integer("seed"))), 1, 0}, context.seed);
+        Fractal fractal = fractalOf(a);
         std::array<std::vector<NoiseOctave>, 3> noise;
         for (int axis = 0; axis < 3; ++axis) {
           BuildContext quiet = context;
           if (axis > 0) quiet.notes = nullptr;  // the three axes leave out the same octaves
-          noise[axis] = fbmOctaves({cellSize,
-                                    a.integer("octaves"),
-                                    2.0,
-                                    0.5,
-                                    0,
-                                    shared::seedApart(seed, axis),
-                                    a.vector("scroll"),
-                                    {}},
-                                   quiet, "warp");
+          fractal.seed = shared::seedApart(seed, axis);
+          noise[axis] = fbmOctaves(fractal, quiet, "warp");
         }
         return std::make_shared<Warp>(a.field("input"), a.number("warp_scale"), std::move(noise));
-      }};
+      },
+      nullptr,
+      [](const Arguments& a) { return fractalOf(a).motion(); }};
 }
 
 }  // namespace nephele

@@ -66,7 +66,10 @@ void gatherFeatures(const WorleyNoise& noise, const FirstCell& first, const glm:
       for (int z = floorOf(low.z - kReach); z <= floorOf(high.z + kReach); ++z, ++count) {
         const glm::ivec3 cell(cellAfter(first.x, float(x)), cellAfter(first.y, float(y)),
                               cellAfter(first.z, float(z)));
-        const glm::vec3 place = shared::featurePoint(cell, noise.jitter, noise.period, noise.seed);
+        const glm::vec3 place =
+            noise.turn.evolves
+                ? shared::turnedFeature(cell, noise.jitter, noise.period, noise.seed, noise.turn.at)
+                : shared::featurePoint(cell, noise.jitter, noise.period, noise.seed);
         out.x[count] = float(x) + place.x;
         out.y[count] = float(y) + place.y;
         out.z[count] = float(z) + place.z;
@@ -176,8 +179,13 @@ void spanOf(const float* x, size_t count, float& low, float& high) {
   }
 }
 
-float fromDistances(const glm::vec2& both, WorleyOutput output) {
-  return output == WorleyOutput::f1 ? both.x : output == WorleyOutput::f2 ? both.y : both.y - both.x;
+/// The definition at the place f in a cell.
+float valueInCell(const WorleyNoise& noise, const glm::ivec3& cell, const glm::vec3& f) {
+  const glm::vec2 both = shared::movingDistances(cell, f, noise.jitter, noise.period, noise.seed,
+                                                 noise.turn.evolves, noise.turn.at);
+  return noise.output == WorleyOutput::f1   ? both.x
+         : noise.output == WorleyOutput::f2 ? both.y
+                                            : both.y - both.x;
 }
 
 }  // namespace
@@ -236,17 +244,14 @@ void worleyAtPoints(const WorleyNoise& noise, const Points& points, float* value
     const glm::ivec3 cell(cellAfter(px.cell, whole.x), cellAfter(py.cell, whole.y),
                           cellAfter(pz.cell, whole.z));
     const glm::vec3 f = glm::vec3(places.x[n], places.y[n], places.z[n]) - whole;
-    values[n] =
-        fromDistances(shared::worleyDistances(cell, f, noise.jitter, noise.period, noise.seed), noise.output);
+    values[n] = valueInCell(noise, cell, f);
   }
 }
 
 float worleyAt(const WorleyNoise& noise, const glm::dvec3& p) {
   const CellPlace x = cellPlace(p.x, noise.cellSize), y = cellPlace(p.y, noise.cellSize),
                   z = cellPlace(p.z, noise.cellSize);
-  return fromDistances(shared::worleyDistances({x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction},
-                                               noise.jitter, noise.period, noise.seed),
-                       noise.output);
+  return valueInCell(noise, {x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction});
 }
 
 }  // namespace nephele

@@ -1,10 +1,11 @@
 // Cellular noise by SIMD, on lattice blocks and at points, with run-time dispatch and equal bits on every
-// target. Depends on field.h alone; Highway stays behind.
+// target. Depends on field.h and turn.h; Highway stays behind.
 #pragma once
 
 #include <cstdint>
 
 #include "bake/fields/field.h"
+#include "bake/fields/turn.h"
 
 namespace nephele {
 
@@ -16,12 +17,13 @@ struct WorleyNoise {
   uint32_t seed = 0;
   int period = 0;  // cells; 0: none
   WorleyOutput output = WorleyOutput::f1;
+  Turn turn{};
 };
 
-/// Distances in cells, ordered as the block; at most 4e-6 from shared::worleyDistances.
+/// Distances in cells, ordered as the block; at most 4e-6 from shared::movingDistances.
 void worleyOnLattice(const WorleyNoise& noise, const Lattice& lattice, float* values);
 
-/// Distances in cells at each point; at most 4e-6 from shared::worleyDistances.
+/// Distances in cells at each point; at most 4e-6 from shared::movingDistances.
 void worleyAtPoints(const WorleyNoise& noise, const Points& points, float* values);
 
 /// The definition at one place, in world units.

@@ -10,6 +10,10 @@ NPH_FN uint cellKey(ivec3 cell, uint seed) {
   return (uint(cell.x) * 0x9e3779b1u) ^ (uint(cell.y) * 0x85ebca77u) ^ (uint(cell.z) * 0xc2b2ae3du) ^ seed;
 }
 
+// 1/1.0386: with gradients that turn in their planes (turnedGradient) the largest value is near 1.03848, at (½, 0.518, 0.350)
+// up to symmetry, and certainly below 1.0386 (a test splits the cell until that is shown). So |turningNoise| ≤ 1.
+NPH_CONST float kTurningScale = 0.9628345f;
+
 // Mixes a lattice point and a seed into 32 well-spread bits.
 NPH_FN uint hashCell(ivec3 cell, uint seed) {
   uint h = cellKey(cell, seed);
@@ -21,12 +25,32 @@ NPH_FN uint hashCell(ivec3 cell, uint seed) {
   return h;
 }
 
-// The gradient of a lattice point, 0…15: the best-mixed bits of one multiplication. Pairs of neighbours two cells apart and
-// nearer are as evenly spread as with hashCell.
-NPH_FN uint hashGradient(ivec3 cell, uint seed) {
+// What a lattice point's gradient hangs on, in the best-mixed bits of one multiplication: the top four choose it, the two
+// below say how it turns. Pairs of neighbours two cells apart and nearer are as evenly spread as with hashCell.
+NPH_FN uint hashCorner(ivec3 cell, uint seed) {
   uint h = cellKey(cell, seed);
   h ^= h >> 15u;
-  return (h * 0x2c1b3c6du) >> 28u;
+  return h * 0x2c1b3c6du;
+}
+
+// The gradient of a lattice point, 0…15.
+NPH_FN uint hashGradient(ivec3 cell, uint seed) { return hashCorner(cell, seed) >> 28u; }
+
+// Noise evolves by what turns at its lattice points, once or twice a cycle and either way round, so that no moment of the
+// cycle but its end is like its start. `turn` holds cosine and sine of the cycle's angle, then of twice the angle; two bits
+// of a hash choose.
+NPH_FN vec2 turnOf(uint bits, vec4 turn) {
+  vec2 chosen = (bits & 1u) == 0u ? vec2(turn.x, turn.y) : vec2(turn.z, turn.w);
+  return (bits & 2u) == 0u ? chosen : vec2(chosen.x, -chosen.y);
+}
+
+// A number in [−1, 1] moved on a closed orbit that starts at `start`: the first coordinate of a point on the unit sphere that
+// turns about the third. If starts are even in [−1, 1] they stay so, as coordinates of even points on a sphere are; the
+// second coordinate takes one of eight evenly spread longitudes, four cosines, by two bits.
+NPH_FN float onOrbit(float start, uint bits, vec2 turn) {
+  float cosine = (bits & 1u) == 0u ? 0.9238795325f : 0.3826834324f;  // of π/8 and 3π/8
+  float second = sqrt(max(1.0f - start * start, 0.0f)) * ((bits & 2u) == 0u ? cosine : -cosine);
+  return start * turn.x + second * turn.y;
 }
 
 // The seed of octave, axis or layer `number` of a noise, apart from the seeds of its neighbours.
@@ -42,6 +66,19 @@ NPH_FN float gradientDot(uint h, float x, float y, float z) {
   float u = h < 8u ? x : y;
   float v = h < 4u ? y : (h == 12u || h == 14u ? x : z);
   return ((h & 1u) == 0u ? u : -u) + ((h & 2u) == 0u ? v : -v);
+}
+
+// The same gradient turned in the plane of its two axes, which keeps its length √2 [after Perlin and Neyret 2001]. `hash` is
+// hashCorner's.
+NPH_FN vec3 turnedGradient(uint hash, vec4 turn) {
+  uint h = hash >> 28u;
+  float signU = (h & 1u) == 0u ? 1.0f : -1.0f;
+  float signV = (h & 2u) == 0u ? 1.0f : -1.0f;
+  vec2 t = turnOf(hash >> 26u, turn);
+  float u = signU * t.x - signV * t.y;
+  float v = signV * t.x + signU * t.y;
+  if (h < 8u) return h < 4u ? vec3(u, v, 0.0f) : vec3(u, 0.0f, v);
+  return h == 12u || h == 14u ? vec3(v, u, 0.0f) : vec3(0.0f, u, v);
 }
 
 // Lattice coordinate folded into [0, period); period 0 folds nothing.
@@ -76,17 +113,30 @@ NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
   return mixCorners(corner, f) * kPerlinScale;
 }
 
-// Slope of perlinNoise per cell along x, y, z: the derivative of the same polynomial.
-NPH_FN vec3 perlinSlope(ivec3 cell, vec3 f, int period, uint seed) {
+// Gradient noise in [−1, 1] whose gradients have turned by `turn` (turnOf); at turn (1, 0, 1, 0) it is perlinNoise but for
+// its scale.
+NPH_FN float turningNoise(ivec3 cell, vec3 f, int period, uint seed, vec4 turn) {
+  float corner[8];
+  for (int c = 0; c < 8; ++c) {
+    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
+    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    vec3 g = turnedGradient(hashCorner(at, seed), turn);
+    vec3 d = vec3(f.x - float(o.x), f.y - float(o.y), f.z - float(o.z));
+    corner[c] = g.x * d.x + g.y * d.y + g.z * d.z;
+  }
+  return mixCorners(corner, f) * kTurningScale;
+}
+
+// Slope per cell along x, y, z of the noise of these gradients at a cell's corners, before its scale: the derivative of the
+// same polynomial.
+NPH_FN vec3 slopeOfCorners(vec3 gradient[8], vec3 f) {
   vec3 fade = vec3(fadeQuintic(f.x), fadeQuintic(f.y), fadeQuintic(f.z));
   vec3 rise = 30.0f * f * f * (f - vec3(1.0f)) * (f - vec3(1.0f));  // the fade's derivative
   vec3 slope = vec3(0.0f);
   for (int c = 0; c < 8; ++c) {
     ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
-    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
-    uint h = hashGradient(at, seed);
     vec3 d = f - vec3(float(o.x), float(o.y), float(o.z));
-    vec3 g = vec3(gradientDot(h, 1.0f, 0.0f, 0.0f), gradientDot(h, 0.0f, 1.0f, 0.0f), gradientDot(h, 0.0f, 0.0f, 1.0f));
+    vec3 g = gradient[c];
     float value = g.x * d.x + g.y * d.y + g.z * d.z;
     float wx = o.x == 1 ? fade.x : 1.0f - fade.x;
     float wy = o.y == 1 ? fade.y : 1.0f - fade.y;
@@ -96,7 +146,31 @@ NPH_FN vec3 perlinSlope(ivec3 cell, vec3 f, int period, uint seed) {
     float rz = o.z == 1 ? rise.z : -rise.z;
     slope += vec3(rx * wy * wz, wx * ry * wz, wx * wy * rz) * value + (wx * wy * wz) * g;
   }
-  return slope * kPerlinScale;
+  return slope;
+}
+
+// Slope of perlinNoise per cell along x, y, z.
+NPH_FN vec3 perlinSlope(ivec3 cell, vec3 f, int period, uint seed) {
+  vec3 gradient[8];
+  for (int c = 0; c < 8; ++c) {
+    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
+    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    uint h = hashGradient(at, seed);
+    gradient[c] =
+        vec3(gradientDot(h, 1.0f, 0.0f, 0.0f), gradientDot(h, 0.0f, 1.0f, 0.0f), gradientDot(h, 0.0f, 0.0f, 1.0f));
+  }
+  return slopeOfCorners(gradient, f) * kPerlinScale;
+}
+
+// Slope of turningNoise per cell along x, y, z.
+NPH_FN vec3 turningSlope(ivec3 cell, vec3 f, int period, uint seed, vec4 turn) {
+  vec3 gradient[8];
+  for (int c = 0; c < 8; ++c) {
+    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
+    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    gradient[c] = turnedGradient(hashCorner(at, seed), turn);
+  }
+  return slopeOfCorners(gradient, f) * kTurningScale;
 }
 
 // Value noise in [−1, 1]: one random value a lattice point, quintic fade between.
@@ -111,6 +185,19 @@ NPH_FN float valueNoise(ivec3 cell, vec3 f, int period, uint seed) {
   return mixCorners(corner, f);
 }
 
+// Value noise in [−1, 1] whose values have moved on orbits (onOrbit, turnOf).
+NPH_FN float turningValue(ivec3 cell, vec3 f, int period, uint seed, vec4 turn) {
+  float corner[8];
+  for (int c = 0; c < 8; ++c) {
+    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
+    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    uint h = hashCell(at, seed);
+    // 2^-23: the hash's upper 24 bits become [0, 2). The lower eight are free.
+    corner[c] = onOrbit(float(h >> 8u) * 1.1920929e-7f - 1.0f, h, turnOf(h >> 2u, turn));
+  }
+  return mixCorners(corner, f);
+}
+
 // The one feature point of a cell, in [0, 1)³ from its corner: the centre for jitter 0, anywhere for 1. Multiples of 1/2048
 // (along z 1/1024), which one hash holds.
 NPH_FN vec3 featurePoint(ivec3 cell, float jitter, int period, uint seed) {
@@ -119,10 +206,22 @@ NPH_FN vec3 featurePoint(ivec3 cell, float jitter, int period, uint seed) {
   return vec3(0.5f) + jitter * (place - vec3(0.5f));
 }
 
+// The same point as it moves on a closed orbit in its cell, of which it is evenly likely to be anywhere at any time (onOrbit).
+NPH_FN vec3 turnedFeature(ivec3 cell, float jitter, int period, uint seed, vec4 turn) {
+  uint h = hashCell(ivec3(foldCell(cell.x, period), foldCell(cell.y, period), foldCell(cell.z, period)), seed);
+  vec3 place = vec3(float(h & 0x7ffu), float((h >> 11u) & 0x7ffu), float((h >> 22u) << 1u)) * (1.0f / 2048.0f);
+  // All of that hash is in use: another multiplication gives eight more bits.
+  uint more = ((h ^ (h >> 15u)) * 0x2c1b3c6du) >> 24u;
+  vec2 t = turnOf(more, turn);
+  vec3 moved = vec3(onOrbit(2.0f * place.x - 1.0f, more >> 2u, t), onOrbit(2.0f * place.y - 1.0f, more >> 4u, t),
+                    onOrbit(2.0f * place.z - 1.0f, more >> 6u, t));
+  return vec3(0.5f) + (0.5f * jitter) * moved;
+}
+
 // Cellular noise: distances in cells to the nearest and second nearest of all feature points [Worley 1996]. Both are at most
 // √3: the worst place is a lattice point whose eight cells hold their points in the far corners. Cells two away are
-// therefore looked at, where they can be near enough; those three away never are.
-NPH_FN vec2 worleyDistances(ivec3 cell, vec3 f, float jitter, int period, uint seed) {
+// therefore looked at, where they can be near enough; those three away never are. `turns`: points move on their orbits.
+NPH_FN vec2 movingDistances(ivec3 cell, vec3 f, float jitter, int period, uint seed, bool turns, vec4 turn) {
   float first = 9.0f;  // squared; above 3
   float second = 9.0f;
   for (int x = -2; x <= 2; ++x) {
@@ -132,8 +231,9 @@ NPH_FN vec2 worleyDistances(ivec3 cell, vec3 f, float jitter, int period, uint s
       for (int z = -2; z <= 2; ++z) {
         float gapZ = max(max(float(z) - f.z, f.z - float(z) - 1.0f), 0.0f);
         if (gapX * gapX + gapY * gapY + gapZ * gapZ > second) continue;
-        vec3 apart = vec3(float(x), float(y), float(z)) +
-                     featurePoint(cell + ivec3(x, y, z), jitter, period, seed) - f;
+        ivec3 at = cell + ivec3(x, y, z);
+        vec3 place = turns ? turnedFeature(at, jitter, period, seed, turn) : featurePoint(at, jitter, period, seed);
+        vec3 apart = vec3(float(x), float(y), float(z)) + place - f;
         float squared = apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
         second = min(second, max(first, squared));
         first = min(first, squared);
@@ -141,4 +241,9 @@ NPH_FN vec2 worleyDistances(ivec3 cell, vec3 f, float jitter, int period, uint s
     }
   }
   return vec2(sqrt(first), sqrt(second));
+}
+
+// The same with feature points at rest.
+NPH_FN vec2 worleyDistances(ivec3 cell, vec3 f, float jitter, int period, uint seed) {
+  return movingDistances(cell, f, jitter, period, seed, false, vec4(1.0f, 0.0f, 1.0f, 0.0f));
 }

@@ -14,8 +14,8 @@
 namespace nephele::test {
 namespace {
 
-/// Octaves and blocks of all kinds: cells from 2 to 1000 voxels, with and without period, near and far from
-/// the origin.
+/// Octaves and blocks of all kinds: cells from 2 to 1000 voxels, with and without period, at rest and turned,
+/// near and far from the origin.
 struct KernelCase {
   NoiseOctave octave;
   Lattice lattice;
@@ -27,8 +27,9 @@ std::vector<KernelCase> cases() {
   for (int n = 0; n < 400; ++n) {
     const double cell = std::exp(exponent(random));
     const double far = n % 7 == 0 ? 1e6 : 0.0;
-    list.push_back({{cell, 0.7f, uint32_t(random()), n % 5 == 0 ? 3 : 0},
-                    {{place(random) + far, place(random) - far, place(random)}, 1.0}});
+    NoiseOctave octave{cell, 0.7f, uint32_t(random()), n % 5 == 0 ? 3 : 0};
+    if (n % 3 == 0) octave.turn = turnAt(0.0123 * n);
+    list.push_back({octave, {{place(random) + far, place(random) - far, place(random)}, 1.0}});
   }
   // Blocks that start on a cell's corner, and cells of exactly two voxels.
   list.push_back({{2.0, 1.0f, 1u, 0}, {{0.0, 8.0, -8.0}, 1.0}});
@@ -40,8 +41,7 @@ std::vector<KernelCase> cases() {
 float byDefinition(const NoiseOctave& octave, const glm::dvec3& p) {
   const CellPlace x = cellPlace(p.x, octave.cellSize), y = cellPlace(p.y, octave.cellSize),
                   z = cellPlace(p.z, octave.cellSize);
-  return octave.weight * shared::perlinNoise({x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction},
-                                             octave.period, octave.seed);
+  return octave.weight * noiseInCell(octave, {x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction});
 }
 
 TEST(NoiseKernels, AgreeWithTheDefinition) {

@@ -202,7 +202,8 @@ struct RecipeWithMesh {
 };
 
 TEST(Files, LieRelativeToTheRecipeAndTheirContentIsInItsHash) {
-  const RecipeWithMesh cube(examples::cubeAsObj(0.5)), same(examples::cubeAsObj(0.5)), other(examples::cubeAsObj(0.6));
+  const RecipeWithMesh cube(examples::cubeAsObj(0.5)), same(examples::cubeAsObj(0.5)),
+      other(examples::cubeAsObj(0.6));
   const auto hash = [](const RecipeWithMesh& files) {
     const Pipeline pipeline = loadPipeline(files.recipe);
     return recipeHash(pipeline, pipeline.assets.front());

@@ -80,7 +80,7 @@ std::vector<KernelCase> cases() {
   std::vector<KernelCase> list;
   for (int n = 0; n < 120; ++n)
     list.push_back({{std::exp(exponent(random)), n % 4 == 0 ? 0.5f : 1.0f, uint32_t(random()),
-                     n % 5 == 0 ? 3 : 0, WorleyOutput(n % 3)},
+                     n % 5 == 0 ? 3 : 0, WorleyOutput(n % 3), n % 7 < 3 ? turnAt(0.0123 * n) : Turn{}},
                     {{place(random), place(random), place(random)}, 1.0}});
   return list;
 }
