@@ -13,6 +13,7 @@
 #include <memory>
 #include <vector>
 
+#include "bake/voxelize_kernels.h"
 #include "volume/vdb_file.h"
 
 namespace nephele {
@@ -34,6 +35,7 @@ constexpr double kMostVoxels = 1e12;
 constexpr int kRootEdge = 128;
 constexpr float kHalfLargest = 65504.0f;
 constexpr int kWordBits = 64;
+constexpr size_t kCacheLine = 64;
 
 /// A cube of 8³, 16³ … 128³ voxels that may hold something.
 struct Cube {
@@ -74,7 +76,11 @@ openvdb::CoordBBox indexBox(const Box& support, double voxelSize) {
 class Voxelizer {
  public:
   Voxelizer(const Field& field, const VoxelizeSettings& settings, const LeafProgress& progress)
-      : field_(field), settings_(settings), progress_(progress) {}
+      : field_(field),
+        settings_(settings),
+        rules_{float(settings.cutoff), settings.half ? kHalfLargest : std::numeric_limits<float>::max(),
+               settings.half},
+        progress_(progress) {}
 
   Voxelized run() {
     findLeaves(indexBox(field_.support(), settings_.voxelSize));
@@ -135,59 +141,34 @@ class Voxelizer {
 
   /// The leaf at `origin`, or null where nothing in it exceeds the cutoff.
   std::unique_ptr<Leaf> fillLeaf(const Coord& origin, LeafSums& sums) const {
-    float values[kBlockPoints];
+    alignas(kCacheLine) float values[kBlockPoints];
     const Lattice lattice{glm::dvec3(origin.x(), origin.y(), origin.z()) * settings_.voxelSize,
                           settings_.voxelSize};
     field_.evaluate(lattice, values);
-    refuseUnstorable(origin, values);
-    const float cutoff = float(settings_.cutoff);
-    for (float& value : values) value = value > cutoff ? value : 0.0f;
-    if (settings_.half)  // flushes what is below 3e-8 to 0
-      for (float& value : values)
-        if (value > 0.0f) value = float(openvdb::math::half(value));
-    Leaf::NodeMaskType mask;
-    for (int word = 0; word < kBlockPoints / kWordBits; ++word) {
-      uint64_t bits = 0;
-      for (int n = 0; n < kWordBits; ++n) bits |= uint64_t(values[word * kWordBits + n] > 0.0f) << n;
-      mask.getWord<uint64_t>(openvdb::Index(word)) = bits;
+    const LeafScan scan = scanLeaf(rules_, values);
+    if (!scan.storable) {
+      field_.evaluate(lattice, values);
+      refuseUnstorable(origin, values);
     }
-    if (mask.isOff()) return nullptr;
-    sumUp(values, sums);
+    if (!scan.active) return nullptr;
+    sums = {scan.mass, scan.maximum};
     auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, 0.0f);
     leaf->allocate();
     std::copy_n(values, kBlockPoints, leaf->buffer().data());
+    Leaf::NodeMaskType mask;
+    for (int word = 0; word < kBlockPoints / kWordBits; ++word)
+      mask.getWord<uint64_t>(openvdb::Index(word)) = scan.mask[word];
     leaf->setValueMask(mask);
     return leaf;
   }
 
-  /// Throws where a value is not finite, or is more than the file's precision holds. The counting loop runs
-  /// in SIMD.
+  /// Throws where a value is not finite, or is more than the file's precision holds.
   void refuseUnstorable(const Coord& origin, const float* values) const {
-    constexpr float kLargest = std::numeric_limits<float>::max();
-    const float limit = settings_.half ? kHalfLargest : kLargest;
-    int bad = 0;
-    for (int n = 0; n < kBlockPoints; ++n) bad += !(values[n] <= limit && values[n] >= -kLargest);
-    if (bad == 0) return;
     for (int n = 0; n < kBlockPoints; ++n) {
       if (!std::isfinite(values[n])) throw VoxelizeError("the density is not finite" + placeOf(origin, n));
-      if (values[n] > limit)
+      if (values[n] > rules_.limit)
         throw VoxelizeError("the density reaches " + shown(double(values[n])) + placeOf(origin, n) +
                             ", more than half precision holds (65504); ask for 'precision: float'");
-    }
-  }
-
-  /// Sums and largest of a leaf, in lanes of their own so that they run in SIMD: 32 values a lane.
-  static void sumUp(const float* values, LeafSums& sums) {
-    constexpr int kLanes = 16;
-    float mass[kLanes] = {}, largest[kLanes] = {};
-    for (int n = 0; n < kBlockPoints; n += kLanes)
-      for (int lane = 0; lane < kLanes; ++lane) {
-        mass[lane] += values[n + lane];
-        largest[lane] = values[n + lane] > largest[lane] ? values[n + lane] : largest[lane];
-      }
-    for (int lane = 0; lane < kLanes; ++lane) {
-      sums.mass += double(mass[lane]);
-      sums.maximum = std::max(sums.maximum, largest[lane]);
     }
   }
 
@@ -225,6 +206,7 @@ class Voxelizer {
 
   const Field& field_;
   const VoxelizeSettings settings_;
+  const LeafRules rules_;
   const LeafProgress& progress_;
   std::vector<Coord> origins_;
   std::vector<std::unique_ptr<Leaf>> leaves_;

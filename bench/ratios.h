@@ -26,7 +26,8 @@ struct Line {
   std::string unit;  // "x", "%", "MB"
   Target target;
   std::optional<double> oursSeconds, theirsSeconds;
-  std::string hash;  // of our result: a speed-up that changes it is none
+  std::optional<double> cpuFigure;  // the same ratio of processor time, which other work moves less
+  std::string hash;                 // of our result: a speed-up that changes it is none
 
   bool reached() const {
     if (target.kind == Target::Kind::none) return true;
@@ -34,12 +35,17 @@ struct Line {
   }
 };
 
-/// Seconds that one call takes, by the steady clock.
-double secondsOf(const std::function<void()>& run);
+/// Seconds on the clock, and of all threads' processor time.
+struct Seconds {
+  double clock = std::numeric_limits<double>::infinity();
+  double cpu = std::numeric_limits<double>::infinity();
+};
+/// What one call takes.
+Seconds secondsOf(const std::function<void()>& run);
 
+/// The least of each over the repeats.
 struct Minima {
-  double ours = std::numeric_limits<double>::infinity();
-  double theirs = std::numeric_limits<double>::infinity();
+  Seconds ours, theirs;
 };
 
 /// Runs both sides by turns, `repeats` times each after one turn that does not count.

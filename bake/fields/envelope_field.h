@@ -3,6 +3,7 @@
 // and shared text.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
@@ -57,6 +58,32 @@ class EnvelopeField final : public Field {
     for (size_t n = 0; n < points.count; ++n)
       values[n] = shared::envelope(shape_.distance(offset + glm::vec3(points.x[n], points.y[n], points.z[n])),
                                    falloff);
+  }
+
+  /// Planes of 64 points, whose distances are taken in SIMD; a block that bounds find all 0 or all 1 costs no
+  /// distance.
+  void evaluate(const Lattice& lattice, float* values) const override {
+    constexpr double kReach = kBlockEdge - 1;
+    const Interval range = bounds({lattice.origin, lattice.origin + kReach * lattice.spacing});
+    if (range.exact()) {
+      std::fill_n(values, kBlockPoints, float(range.low));
+      return;
+    }
+    // Local copies: the compiler then sees that nothing overlaps the values.
+    const Shape shape = shape_;
+    const glm::vec3 offset(lattice.origin - centre_);
+    const float falloff = float(falloff_);
+    constexpr int kPlane = kBlockEdge * kBlockEdge;
+    float y[kPlane], z[kPlane];
+    for (int n = 0; n < kPlane; ++n) {
+      y[n] = float(n / kBlockEdge * lattice.spacing);
+      z[n] = float(n % kBlockEdge * lattice.spacing);
+    }
+    for (int i = 0; i < kBlockEdge; ++i, values += kPlane) {
+      const float x = float(i * lattice.spacing);
+      for (int n = 0; n < kPlane; ++n)
+        values[n] = shared::envelope(shape.distance(offset + glm::vec3(x, y[n], z[n])), falloff);
+    }
   }
 
   Interval bounds(const Box& box) const override {
