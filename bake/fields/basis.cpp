@@ -11,10 +11,6 @@
 namespace nephele {
 namespace {
 
-// Slope of value noise per cell: fade' ≤ 1.875 on each axis, values up to 2 apart; the steepest place mixes
-// the three axes no steeper than one alone, since the other weights then lie between.
-constexpr double kValueSlope = 1.875 * 2.0;
-
 WorleyNoise worleyOf(const NoiseOctave& octave) {
   return {octave.cellSize, 1.0f, octave.seed, octave.period, WorleyOutput::f1, octave.turn};
 }

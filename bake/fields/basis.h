@@ -23,6 +23,11 @@ enum class Fold { plain, ridged, billow };
 /// noise; for worley E N = −0.041, E|N| = 0.282 (each ± 0.001).
 double meanOf(Basis basis, Fold fold);
 
+/// Largest slope of value noise per cell, in any direction: fade' ≤ 1.875 on each axis, values up to 2 apart;
+/// the steepest place mixes the three axes no steeper than one alone, since the other weights then lie
+/// between.
+inline constexpr double kValueSlope = 1.875 * 2.0;
+
 /// values[n] = N of one octave (its weight is not used).
 void evaluateBasis(Basis basis, const NoiseOctave& octave, const Points& points, float* values);
 void evaluateBasis(Basis basis, const NoiseOctave& octave, const Lattice& lattice, float* values);
