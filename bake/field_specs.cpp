@@ -190,6 +190,7 @@ FieldSpecPtr FieldReader::readRow(const FieldRow& row, const yaml::Node& body, c
       const yaml::NodePtr node = reader.find(parameter.name);
       const std::string what = inQuotes(parameter.name) + " of " + rowName;
       if (node) {
+        spec->places[std::string(parameter.name)] = reader.where(parameter.name);
         good = readParameter(parameter, what, node, *spec) && good;
       } else if (parameter.fallback) {
         spec->values.emplace(parameter.name, *parameter.fallback);

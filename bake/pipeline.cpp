@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <set>
 
 #include "bake/field_specs.h"
+#include "bake/fields/motion.h"
 #include "base/hash.h"
 #include "base/version.h"
 #include "base/yaml.h"
@@ -32,6 +34,54 @@ void readFrames(yaml::MapReader& reader, Asset& asset, Diagnostics& out) {
   if (!asset.frames) out.add(node->where, "'frames' must read A-B, with 0 <= A <= B, as in 1-48");
 }
 
+/// `loop: true` is the frame range; a number is so many frames.
+void readLoop(yaml::MapReader& reader, Asset& asset, Diagnostics& out) {
+  const yaml::NodePtr node = reader.find("loop");
+  if (!node || (node->kind == yaml::Kind::scalar && node->scalar == "false")) return;
+  if (!reader.has("frames")) {
+    out.add(reader.where("loop"), "'loop' needs 'frames', the range that is baked");
+    return;
+  }
+  if (node->kind == yaml::Kind::scalar && node->scalar == "true") {
+    if (asset.frames) asset.loopFrames = int64_t{asset.frames->last} - asset.frames->first + 1;
+    return;
+  }
+  constexpr double kLongestLoop = 1e6;
+  asset.loopFrames = yaml::readInteger(*node, "'loop' (true, or a number of frames)",
+                                       {1.0, kLongestLoop, false, false}, out);
+}
+
+/// Every field of a spec once, however often it is shared.
+template <class Visit>
+void forEachSpec(const FieldSpec& spec, std::set<const FieldSpec*>& seen, const Visit& visit) {
+  if (!seen.insert(&spec).second) return;
+  visit(spec);
+  for (const auto& [name, children] : spec.children)
+    for (const FieldSpecPtr& child : children) forEachSpec(*child, seen, visit);
+}
+
+/// The asset's own fields that move, with their motion.
+std::vector<std::pair<const FieldSpec*, Motion>> motionsOf(const Asset& asset) {
+  std::vector<std::pair<const FieldSpec*, Motion>> list;
+  std::set<const FieldSpec*> seen;
+  if (asset.density)
+    forEachSpec(*asset.density, seen, [&](const FieldSpec& spec) {
+      if (spec.row->motion) list.emplace_back(&spec, spec.row->motion(Arguments(spec.values)));
+    });
+  return list;
+}
+
+Loop loopOf(const Asset& asset, int64_t frame) { return {*asset.loopFrames, frame, asset.fps}; }
+
+void checkLoop(const Asset& asset, Diagnostics& out) {
+  if (!asset.loopFrames) return;
+  for (const auto& [spec, motion] : motionsOf(asset))
+    for (const auto& [parameter, sentence] : loopComplaints(motion, loopOf(asset, 0))) {
+      const auto place = spec->places.find(parameter);
+      out.add(place == spec->places.end() ? spec->where : place->second, sentence);
+    }
+}
+
 Asset readAsset(const yaml::Entry& entry, FieldReader& fields, Diagnostics& out) {
   Asset asset;
   asset.name = entry.key;
@@ -50,6 +100,7 @@ Asset readAsset(const yaml::Entry& entry, FieldReader& fields, Diagnostics& out)
       reader.choice("precision", "half", {"half", "float"}) == "half" ? Precision::half : Precision::single;
   asset.cutoff = reader.number("cutoff", asset.cutoff, kNonNegative);
   readFrames(reader, asset, out);
+  readLoop(reader, asset, out);
   const bool tolerance = reader.find("tolerance") != nullptr, particles = reader.find("particles") != nullptr;
   if (tolerance && reader.has("voxel_size"))
     out.add(reader.where("tolerance"), what + " gives both 'voxel_size' and 'tolerance'; give one of them");
@@ -62,6 +113,7 @@ Asset readAsset(const yaml::Entry& entry, FieldReader& fields, Diagnostics& out)
     asset.density = fields.read(density, "'density'");
   else if (!particles)
     out.add(entry.where, what + " needs 'density'");
+  checkLoop(asset, out);
   reader.finish();
   return asset;
 }
@@ -170,7 +222,26 @@ FieldPtr buildField(const FieldSpec& spec, const BuildContext& context) {
   return FieldBuilder(context).build(spec);
 }
 
-std::string recipeHash(const Pipeline& pipeline, const Asset& asset, double time) {
+BuildContext contextOf(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame) {
+  BuildContext context;
+  context.voxelSize = asset.voxelSize;
+  context.upAxis = pipeline.upAxis == 'y' ? 1 : 2;
+  context.seed = uint32_t(pipeline.seed);
+  if (frame) context.time = *frame / asset.fps;
+  if (frame && asset.loopFrames) context.loop = loopOf(asset, *frame);
+  return context;
+}
+
+std::vector<LoopNote> loopNotesOf(const Asset& asset) {
+  std::vector<LoopNote> notes;
+  if (!asset.loopFrames) return notes;
+  for (const auto& [spec, motion] : motionsOf(asset))
+    for (LoopNote& note : loopNotes(motion, loopOf(asset, 0), spec->row->name))
+      notes.push_back(std::move(note));
+  return notes;
+}
+
+std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame) {
   Hasher hasher;
   hasher.text(programVersion());
   hasher.value(pipeline.upAxis);
@@ -178,7 +249,13 @@ std::string recipeHash(const Pipeline& pipeline, const Asset& asset, double time
   hasher.value(asset.voxelSize);
   hasher.value(int(asset.precision));
   hasher.value(asset.cutoff);
-  hasher.value(time);
+  const BuildContext context = contextOf(pipeline, asset, frame);
+  hasher.value(context.loop ? 0.0 : context.time);
+  if (context.loop) {
+    hasher.value(context.loop->frames);
+    hasher.value(context.loop->frame % context.loop->frames);
+    hasher.value(context.loop->fps);
+  }
   const bool medium = pipeline.scene && pipeline.scene->medium;
   hasher.value(int(medium));
   if (medium) {

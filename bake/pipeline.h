@@ -21,7 +21,8 @@ struct FieldSpec {
   SourceLocation where;
   std::map<std::string, Value, std::less<>> values;  // all but child fields
   std::map<std::string, std::vector<std::shared_ptr<const FieldSpec>>, std::less<>>
-      children;  // field and fields
+      children;                                               // field and fields
+  std::map<std::string, SourceLocation, std::less<>> places;  // of the parameters that the recipe gives
 };
 using FieldSpecPtr = std::shared_ptr<const FieldSpec>;
 
@@ -41,6 +42,7 @@ struct Asset {
   double cutoff = 0.001;  // voxels at or below are inactive and 0
   std::optional<FrameRange> frames;
   double fps = 24.0;
+  std::optional<int64_t> loopFrames;  // frames after which all motion comes round
   FieldSpecPtr density;
 };
 
@@ -62,9 +64,15 @@ std::optional<FrameRange> parseFrames(const std::string& text);
 /// decides.
 FieldPtr buildField(const FieldSpec& spec, const BuildContext& context);
 
+/// What the asset's fields are built with at a frame; without one at time 0.
+BuildContext contextOf(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame = {});
+
+/// What the asset's loop makes of its motion's parameters; empty without a loop.
+std::vector<LoopNote> loopNotesOf(const Asset& asset);
+
 /// 32 hex digits of everything that the asset's content depends on: its fields with all parameters, voxel
-/// size, contents of the files they name, cutoff, precision, up axis, seed, medium, `time` in seconds,
-/// and the program's version. Equal recipes written differently give equal hashes.
-std::string recipeHash(const Pipeline& pipeline, const Asset& asset, double time = 0.0);
+/// size, contents of the files they name, cutoff, precision, up axis, seed, medium, time (in a loop the
+/// frame's place in it), and the program's version. Equal recipes written differently give equal hashes.
+std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame = {});
 
 }  // namespace nephele

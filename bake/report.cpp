@@ -5,8 +5,28 @@
 
 namespace nephele {
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// `seam` is null where it was not measured with this frame.
+Json loopJson(const BakeRecord& record) {
+  Json adjusted = Json::array();
+  for (const LoopNote& note : record.loopNotes)
+    adjusted.push_back(
+        {{"field", note.field}, {"parameter", note.parameter}, {"asked", note.asked}, {"used", note.used}});
+  Json seam(nullptr);
+  if (record.seam)
+    seam = {{"frame", record.seam->frame},
+            {"largest_difference", record.seam->largestDifference},
+            {"content_hash", record.seam->contentHash},
+            {"seconds", record.secondsSeam}};
+  return {{"frames", *record.loopFrames}, {"seam", seam}, {"adjusted", adjusted}};
+}
+
+}  // namespace
+
 std::string reportAsJson(const std::vector<BakeRecord>& records) {
-  using Json = nlohmann::ordered_json;
   Json assets = Json::array();
   for (const BakeRecord& record : records) {
     Json entry{{"name", record.name}, {"file", record.file}};
@@ -30,6 +50,7 @@ std::string reportAsJson(const std::vector<BakeRecord>& records) {
                        {"cell_voxels", note.cellVoxels},
                        {"weight", note.weight}});
     entry["band_limit"] = std::move(notes);
+    if (record.loopFrames) entry["loop"] = loopJson(record);
     assets.push_back(std::move(entry));
   }
   return Json{{"assets", std::move(assets)}}.dump(2) + "\n";

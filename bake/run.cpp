@@ -97,14 +97,21 @@ Voxelized fill(const Field& field, const Asset& asset, const std::string& label,
   }
 }
 
+/// Bakes the frame a loop after the asset's first one, and holds it against that.
+LoopSeam measureSeam(const Pipeline& pipeline, const Asset& asset, const Voxelized& first, bool quiet) {
+  LoopSeam seam;
+  seam.frame = asset.frames->first + int(*asset.loopFrames);
+  const FieldPtr field = buildField(*asset.density, contextOf(pipeline, asset, seam.frame));
+  const Voxelized later = fill(*field, asset, asset.name + ": seam", quiet);
+  seam.largestDifference = largestDifference(first, later);
+  seam.contentHash = contentHashOf(later);
+  return seam;
+}
+
 BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::string& hash, bool quiet) {
   BakeRecord record;
-  BuildContext context;
-  context.voxelSize = job.asset->voxelSize;
-  context.upAxis = pipeline.upAxis == 'y' ? 1 : 2;
-  context.seed = uint32_t(pipeline.seed);
+  BuildContext context = contextOf(pipeline, *job.asset, job.frame);
   context.notes = &record.bandLimit;
-  context.time = job.time();
   auto start = std::chrono::steady_clock::now();
   const FieldPtr field = buildField(*job.asset->density, context);
   const Voxelized voxelized = fill(*field, *job.asset, fs::path(job.file).filename().string(), quiet);
@@ -112,6 +119,11 @@ BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::stri
   start = std::chrono::steady_clock::now();
   record.contentHash = contentHashOf(voxelized);
   record.secondsHash = secondsSince(start);
+  if (job.asset->loopFrames && job.frame == job.asset->frames->first) {
+    start = std::chrono::steady_clock::now();
+    record.seam = measureSeam(pipeline, *job.asset, voxelized, quiet);
+    record.secondsSeam = secondsSince(start);
+  }
   start = std::chrono::steady_clock::now();
   record.bytes = writeDensity(job.file, voxelized, provenanceOf(pipeline, job, hash));
   record.secondsWrite = secondsSince(start);
@@ -147,6 +159,13 @@ void tell(const BakeRecord& record) {
                   note.octave + 1, note.cellVoxels, note.weight > 0.0 ? "weakened" : "left out");
     std::cerr << line;
   }
+  for (const LoopNote& note : record.loopNotes)
+    std::cerr << "  " << note.field << ": '" << note.parameter << "' of " << note.asked << " became "
+              << note.used << " to close the loop\n";
+  if (record.seam)
+    std::cerr << "  loop of " << *record.loopFrames << " frames: largest difference "
+              << record.seam->largestDifference << " between frames " << *record.frame << " and "
+              << record.seam->frame << '\n';
 }
 
 void makeFolder(const std::string& folder) {
@@ -196,7 +215,7 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
   removeLeftovers(options.outFolder);
   std::vector<BakeRecord> records;
   for (const BakeJob& job : jobs) {
-    const std::string hash = recipeHash(pipeline, *job.asset, job.time());
+    const std::string hash = recipeHash(pipeline, *job.asset, job.frame);
     BakeRecord record;
     if (!options.force && isUpToDate(job, hash)) {
       record.skipped = true;
@@ -208,6 +227,9 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
     record.file = job.file;
     record.frame = job.frame;
     record.recipeHash = hash;
+    record.loopFrames = job.asset->loopFrames;
+    // Told once, with the frame that the seam is measured with.
+    if (job.frame && job.frame == job.asset->frames->first) record.loopNotes = loopNotesOf(*job.asset);
     if (!options.quiet) tell(record);
     records.push_back(std::move(record));
   }

@@ -31,9 +31,13 @@ struct BakeJob {
   const Asset* asset = nullptr;
   std::optional<int> frame;
   std::string file;  // outFolder/NAME.vdb or outFolder/NAME_0001.vdb
+};
 
-  /// Seconds since frame 0; 0 for an asset without frames.
-  double time() const { return frame ? *frame / asset->fps : 0.0; }
+/// How a loop closes: the frame that begins the asset's range against the one a loop later.
+struct LoopSeam {
+  int frame = 0;
+  double largestDifference = 0.0;  // of densities
+  std::string contentHash;         // of the frame a loop later
 };
 
 /// What one file cost and holds. Files that were up to date cost nothing.
@@ -43,12 +47,15 @@ struct BakeRecord {
   std::optional<int> frame;
   std::string recipeHash;
   bool skipped = false;
-  double secondsFill = 0.0, secondsHash = 0.0, secondsWrite = 0.0;
+  double secondsFill = 0.0, secondsHash = 0.0, secondsSeam = 0.0, secondsWrite = 0.0;
   uint64_t voxelsActive = 0, voxelsEvaluated = 0;
   uint64_t gridBytes = 0, bytes = 0, peakBytes = 0;
   std::string contentHash;
   double mass = 0.0, maximum = 0.0;
   std::vector<BandLimitNote> bandLimit;
+  std::optional<int64_t> loopFrames;
+  std::vector<LoopNote> loopNotes;
+  std::optional<LoopSeam> seam;  // measured with the asset's first frame; none where that was up to date
 };
 
 /// The files that the options select, in recipe order. Throws InputError for an asset that the recipe lacks,

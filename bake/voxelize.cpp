@@ -13,14 +13,10 @@
 #include <memory>
 #include <vector>
 
+#include "bake/voxelize_grid.h"
 #include "bake/voxelize_kernels.h"
-#include "volume/vdb_file.h"
 
 namespace nephele {
-
-struct VoxelGrid {
-  openvdb::FloatGrid::Ptr grid;
-};
 
 namespace {
 

@@ -50,6 +50,9 @@ Voxelized voxelize(const Field& field, const VoxelizeSettings& settings, const L
 /// The grid's content hash (volume/vdb_file.h), 32 hex digits.
 std::string contentHashOf(const Voxelized& voxelized);
 
+/// The largest |density difference| over all voxels. 0 where the grids' voxels and values are the same.
+double largestDifference(const Voxelized& a, const Voxelized& b);
+
 /// Writes the grid to `path`, whole or not at all; returns the file's size in bytes. Throws WorldError.
 uint64_t writeDensity(const std::string& path, const Voxelized& voxelized, const Provenance& provenance);
 

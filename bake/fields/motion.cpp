@@ -67,7 +67,13 @@ void complainOfScroll(std::string_view name, const glm::dvec3& speed, const Moti
                          "cells after which the pattern repeats, or 'evolve' in place of it");
     return;
   }
-  for (int axis = 0; axis < 3; ++axis)
+  constexpr double kMostPeriods = 1e9;  // counted in whole numbers without loss
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(std::abs(speed[axis]) * seconds(loop) / motion.period < kMostPeriods)) {
+      out.emplace_back(name,
+                       "'" + std::string(name) + "' passes more than 10^9 periods in " + framesText(loop));
+      return;
+    }
     if (speed[axis] != 0.0 && wholePeriods(speed[axis], motion, loop) == 0) {
       out.emplace_back(name, "'" + std::string(name) + "' of " + shown(speed[axis]) + " along " +
                                  "xyz"[axis] + " does not pass half a period of " + shown(motion.period) +
@@ -75,6 +81,7 @@ void complainOfScroll(std::string_view name, const glm::dvec3& speed, const Moti
                                  shown(motion.period / seconds(loop)) + " or a multiple of it");
       return;
     }
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "bake/fields/motion.h"
 #include "bake/fields/perlin.h"
 #include "bake/fields/shared_text.h"
 #include "bake/fields/worley_kernels.h"
@@ -209,6 +210,50 @@ TEST(Evolving, FinerOctavesTurnFasterByTwoThirdsOfTheirFineness) {
   EXPECT_NEAR(evolveRate(2.0, 3), 4.0, 1e-14);
   EXPECT_EQ(evolveRate(1.0, 5), 1.0);
   EXPECT_EQ(evolveRate(3.0, 0), 1.0);
+}
+
+TEST(Loop, EveryRowComesRoundBitForBit) {
+  for (const FieldRow& row : fieldTable()) {
+    if (!row.motion) continue;
+    const std::string name(row.name);
+    std::map<std::string, Value, std::less<>> moving{{"evolve", 0.61}};
+    for (const Parameter& parameter : row.parameters) {
+      if (parameter.name == "period") moving.emplace("period", int64_t{3});
+      if (parameter.name == "scroll") moving.emplace("scroll", std::array<double, 3>{1.7, -3.1, 0.0});
+      if (parameter.name == "fine_scroll")
+        moving.emplace("fine_scroll", std::array<double, 3>{0.0, 2.2, -0.9});
+    }
+    constexpr int64_t kFrames = 97;
+    const auto at = [&](int64_t frame) {
+      return makeField(
+          name, moving,
+          BuildContext{0.01, 2, 0, nullptr, double(frame) / 23.976, Loop{kFrames, frame, 23.976}});
+    };
+    const FieldPtr start = at(5), after = at(5 + kFrames), late = at(5 + 1000 * kFrames), between = at(6);
+    int changed = 0;
+    for (int n = 0; n < 300; ++n) {
+      const glm::dvec3 p(0.011 * n, 0.023 * n, -0.031 * n);
+      ASSERT_EQ(valueAt(*start, p), valueAt(*after, p)) << name;
+      ASSERT_EQ(valueAt(*start, p), valueAt(*late, p)) << name;
+      changed += valueAt(*start, p) != valueAt(*between, p);
+    }
+    EXPECT_GT(changed, 150) << name;
+  }
+}
+
+TEST(Loop, TakesTheNearestMotionThatCloses) {
+  // 48 frames at 24 are two seconds; a period of 4 cells of ½ is two world units.
+  const Motion motion{2.0, {0.9, -2.4, 0.0}, {0.0, 0.0, 3.0}, 0.8, 4, 2.0};
+  const Loop loop{48, 12, 24.0};
+  const BuildContext context{0.01, 2, 0, nullptr, 0.5, loop};
+  EXPECT_EQ(octavePlace(motion, 0, context).offset,
+            glm::dvec3(0.25 * 2.0, 0.5 * 2.0, 0.0));                   // 1, −2, 0 periods
+  EXPECT_EQ(octavePlace(motion, 3, context).offset.z, 0.75 * 2.0);     // 3 periods
+  EXPECT_EQ(octavePlace(motion, 0, context).turn.at, turnAt(0.5).at);  // 2 turns
+  EXPECT_EQ(meanScroll(motion, context), glm::dvec3(1.0, -2.0, 1.5));
+  ASSERT_EQ(loopNotes(motion, loop, "fbm").size(), 2u);
+  EXPECT_EQ(loopNotes(motion, loop, "fbm")[0].used, "[1, -2, 0]");
+  EXPECT_EQ(loopNotes(motion, loop, "fbm")[1].used, "1");
 }
 
 TEST(Evolving, BoundsContainEveryValue) {

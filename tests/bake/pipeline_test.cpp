@@ -229,6 +229,38 @@ TEST(Files, ComplaintsNameTheFileAndStandBesideThoseOfTheRecipe) {
   }
 }
 
+std::string looped(const std::string& keys, const std::string& density) {
+  return "assets:\n  puff:\n    voxel_size: 0.1\n" + keys + "    density: " + density + "\n";
+}
+
+TEST(Loop, MeansTheFrameRangeOrANumberOfFrames) {
+  const auto framesOf = [](const std::string& loop) {
+    return load(looped("    frames: 5-28\n    loop: " + loop + "\n", "sphere")).assets.front().loopFrames;
+  };
+  EXPECT_EQ(framesOf("true"), 24);
+  EXPECT_EQ(framesOf("12"), 12);
+  EXPECT_EQ(framesOf("false"), std::nullopt);
+  EXPECT_EQ(onlyComplaint(looped("    loop: 12\n", "sphere")),
+            "4:5: 'loop' needs 'frames', the range that is baked");
+  EXPECT_NE(onlyComplaint(looped("    frames: 1-2\n    loop: often\n", "sphere")).find("5:11: 'loop'"),
+            std::string::npos);
+  EXPECT_NE(onlyComplaint(looped("    frames: 1-2\n    loop: 0\n", "sphere")).find("5:11: 'loop'"),
+            std::string::npos);
+}
+
+TEST(Loop, RefusesWhatCannotCloseAndSaysWhatWould) {
+  const std::string keys = "    frames: 1-24\n    loop: true\n";
+  const auto complaint = [&](const std::string& density) { return onlyComplaint(looped(keys, density)); };
+  EXPECT_NE(complaint("{ multiply: [sphere, { fbm: { scroll: [1, 0, 0] } }] }").find("6:44: 'scroll' moves a"),
+            std::string::npos);
+  EXPECT_NE(complaint("{ perlin: { period: 8, scroll: [0, 0.5, 0] } }").find("give 0, 8 or a multiple"),
+            std::string::npos);
+  EXPECT_NE(complaint("{ perlin: { evolve: 0.2 } }").find("6:26: 'evolve' of 0.2 does not make half a turn"),
+            std::string::npos);
+  EXPECT_EQ(complaints(looped(keys, "{ perlin: { period: 8, scroll: [0, 4.1, 0], evolve: -0.6 } }")),
+            std::vector<std::string>{});
+}
+
 TEST(Frames, ReadsRangesAndNothingElse) {
   ASSERT_TRUE(parseFrames("3-12"));
   EXPECT_EQ(parseFrames("3-12")->last, 12);
