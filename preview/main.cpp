@@ -46,7 +46,9 @@ void addRenderOptions(CLI::App& app, Arguments& a) {
   app.add_option("--size", a.size, "Size of the rendered picture, pixels")->capture_default_str();
   app.add_option("--window-size", a.windowSize, "Size of the window, pixels")->capture_default_str();
   app.add_option("--method", a.render.method, "How radiance is found")->capture_default_str();
-  app.add_option("--scene", a.render.scene, "A scene, or any YAML file with a top-level scene:");
+  app.add_option("--scene", a.render.scene,
+                 "A scene, any YAML file with a top-level scene:, or a preset: noon, sunset, backlit, "
+                 "moonlight, overcast");
   app.add_option("--grid", a.render.grid,
                  "The grid to show (default: density, else the first float fog grid)");
   app.add_option("--spp", a.render.samples, "Samples a pixel")

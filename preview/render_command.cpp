@@ -12,9 +12,12 @@
 #include <sstream>
 
 #include "base/files.h"
+#include "preview/behind.h"
 #include "preview/measure/compare.h"
 #include "preview/method.h"
 #include "preview/resolve.h"
+#include "scene/light_model.h"
+#include "scene/presets.h"
 
 namespace nephele {
 namespace {
@@ -44,27 +47,6 @@ std::string replaceHashes(const std::string& path, int frame) {
 
 bool hasExtension(const std::string& path, const std::string& extension) {
   return std::filesystem::path(path).extension() == extension;
-}
-
-void addEnvironment(Picture& picture, const Environment& environment) {
-  const size_t pixels = picture.planes[0].size();
-  for (size_t c = 0; c < environment.constant.size(); ++c) {
-    const float radiance = static_cast<float>(environment.constant[c]);
-    for (size_t i = 0; i < pixels; ++i)
-      picture.planes[c][i] += picture.planes[kColourPlanes + c][i] * radiance;
-  }
-}
-
-/// The backdrop is no light: exposure, which the writer applies to all, is taken out of it.
-Backdrop backdropOf(const Scene& scene, double exposureEv) {
-  Backdrop backdrop;  // black where the environment is in the picture already
-  if (scene.environment.show) return backdrop;
-  const BackdropColours colours = scene.backdrop.value_or(BackdropColours{});
-  for (size_t c = 0; c < backdrop.top.size(); ++c) {
-    backdrop.bottom[c] = static_cast<float>(colours.bottom[c] * std::exp2(-exposureEv));
-    backdrop.top[c] = static_cast<float>(colours.top[c] * std::exp2(-exposureEv));
-  }
-  return backdrop;
 }
 
 void checkOptions(const RenderOptions& options) {
@@ -120,7 +102,7 @@ class Sequence {
     if (!view_) {
       std::string sentence;
       view_ = resolveScene(scene_, bricks, static_cast<double>(options_.width) / options_.height, sentence);
-      std::cerr << sentence << '\n';
+      std::cerr << sentence << '\n' << describeLight(*view_) << '\n';
       method_ = row_.make({options_.filter});
     }
     method_->setVolume(bricks);
@@ -128,7 +110,7 @@ class Sequence {
     Picture picture = method_->render(
         *view_, {options_.width, options_.height, options_.samples, options_.seed, false}, cost);
     if (!exposureEv_) exposureEv_ = hasExtension(out, ".png") ? exposureFor(options_, picture) : 0.0;
-    writePicture(out, std::move(picture), scene_, *exposureEv_, options_.aov);
+    writePicture(out, std::move(picture), *view_, *exposureEv_, options_.aov);
     ++totals_.frames;
     totals_.cost.milliseconds += cost.milliseconds;
     totals_.cost.densitySamplesPerPixel += cost.densitySamplesPerPixel;
@@ -149,15 +131,20 @@ class Sequence {
   Totals totals_;
 };
 
+/// A scene file, or the preset of that name where there is no such file.
+Scene sceneNamed(const std::string& name) {
+  const bool preset = name.find_first_of("./\\") == std::string::npos && !std::filesystem::exists(name);
+  if (!preset) return loadScene(name);
+  Scene scene = defaultScene();
+  applyPreset(findPreset(name), scene);
+  return scene;
+}
+
 }  // namespace
 
 Scene openScene(const std::string& path, std::optional<double> stepVoxels) {
-  Scene scene;
-  scene.look = Look::report;  // what a file opens in where no scene says otherwise
-  if (!path.empty()) scene = loadScene(path);
+  Scene scene = path.empty() ? defaultScene() : sceneNamed(path);
   if (stepVoxels) scene.march.stepVoxels = *stepVoxels;
-  if (scene.look == Look::report)
-    std::cerr << "look: report; the looks 'report' and 'physical' do not differ in anything yet\n";
   return scene;
 }
 
@@ -191,10 +178,11 @@ std::string frameOutput(const std::string& pattern, int frame) {
   return (path.parent_path() / name).string();
 }
 
-void writePicture(const std::string& path, Picture picture, const Scene& scene, double exposureEv, bool aov) {
-  if (scene.environment.show) addEnvironment(picture, scene.environment);
+void writePicture(const std::string& path, Picture picture, const ViewedScene& view, double exposureEv,
+                  bool aov) {
   if (hasExtension(path, ".png")) {
-    writePng(path, picture, static_cast<float>(exposureEv), backdropOf(scene, exposureEv));
+    if (behindOf(view.scene) == Behind::sky) addSky(picture, view);
+    writePng(path, picture, static_cast<float>(exposureEv), backdropOf(view.scene, exposureEv));
     return;
   }
   if (!aov) {

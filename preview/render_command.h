@@ -8,6 +8,7 @@
 
 #include "base/picture.h"
 #include "preview/filter.h"
+#include "preview/viewed_scene.h"
 #include "scene/scene.h"
 #include "volume/bricks.h"
 
@@ -18,7 +19,7 @@ struct RenderOptions {
   std::string file;
   std::string out;  // .exr or .png
   std::string method = "march";
-  std::string scene;  // empty: the default scene in the report look
+  std::string scene;  // a file or a preset; empty: the default scene in the report look
   std::string grid;   // empty: chosen
   int width = 960;
   int height = 540;
@@ -32,9 +33,8 @@ struct RenderOptions {
   std::optional<std::pair<int, int>> frames;  // both ends included
 };
 
-/// The scene of `path`, or the default one in the report look where it is empty; a step given replaces the
-/// scene's. Says on stderr, once a call, that looks do not differ yet where the report look is on. Throws
-/// InputError.
+/// The scene of the file `path`, or the preset of that name where there is no such file, or the default scene
+/// in the report look where it is empty; a step given replaces the scene's. Throws InputError.
 Scene openScene(const std::string& path, std::optional<double> stepVoxels);
 
 /// Loads a grid and puts its notes on stderr; an empty one gets a sentence.
@@ -47,9 +47,10 @@ std::string framePath(const std::string& pattern, int frame);
 /// OUT_0001.exr for OUT.exr, or a run of # replaced.
 std::string frameOutput(const std::string& pattern, int frame);
 
-/// Writes a render with its eight planes by the ending of `path`: .png over the scene's backdrop, or the
-/// environment where it is shown; .exr with R, G, B, A, and all planes where `aov` is set.
-void writePicture(const std::string& path, Picture picture, const Scene& scene, double exposureEv, bool aov);
+/// Writes a render with its eight planes by the ending of `path`: .png over what behindOf(scene) says
+/// (preview/behind.h); .exr with R, G, B, A, and all planes where `aov` is set.
+void writePicture(const std::string& path, Picture picture, const ViewedScene& view, double exposureEv,
+                  bool aov);
 
 /// The exposure at which the medium's bright parts (95th percentile of radiance over alpha, where alpha
 /// exceeds ½) are shown at 0.6 of white before the transfer function, within ±16 EV; 0 where nothing of it is

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <glm/matrix.hpp>
+#include <iomanip>
 #include <sstream>
+
+#include "scene/light_model.h"
 
 namespace nephele {
 namespace {
@@ -159,6 +162,26 @@ ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double a
     view.camera = frameCamera(bricks, view.up, Camera{}.fov, aspect);
   }
   return view;
+}
+
+std::string describeLight(const ViewedScene& view) {
+  const LightModel model = lightModelOf(view.scene, view.medium);
+  std::ostringstream out;
+  out << "look: " << nameOf(model.look);
+  std::string unphysical;
+  for (const LightTerm& term : termsOf(model)) {
+    if (!term.on) continue;
+    out << ", " << term.name;
+    if (!term.physical) unphysical += (unphysical.empty() ? "" : ", ") + std::string(term.name);
+  }
+  if (model.octaveCount > 0) {
+    const double furnace = furnaceValue(model.octaveCount, model.a, model.b);
+    constexpr int kDigits = 3;
+    out << " (" << model.octaveCount << " beyond the first; white furnace " << std::setprecision(kDigits)
+        << furnace << (furnace > 1.0 ? ", ABOVE 1: they make light" : "") << ')';
+  }
+  if (!unphysical.empty()) out << "; not physical: " << unphysical;
+  return out.str();
 }
 
 }  // namespace nephele

@@ -42,4 +42,8 @@ glm::dvec3 turnedTo(const glm::dvec3& up, const glm::dvec3& direction);
 ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double aspect,
                          std::string& mediumSentence);
 
+/// For stderr: the look, the terms that are on, which of them are not physical, and the furnace value where
+/// octaves are on, marked above 1.
+std::string describeLight(const ViewedScene& view);
+
 }  // namespace nephele

@@ -48,11 +48,16 @@ float brickDensity(uint slot, vec3 position) {
 }
 #endif
 
+#include "sky.glsl"
+#include "shared/chord.glsl"
 #include "shared/phase.glsl"
 #include "shared/random.glsl"
 #include "shared/ray_box.glsl"
+#include "shared/remap.glsl"
+#include "shared/powder.glsl"
 #include "shared/step_integral.glsl"
 #include "shared/walk.glsl"
+#include "shared/environment.glsl"
 #include "shared/light.glsl"
 #include "shared/march.glsl"
 
@@ -60,8 +65,9 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   uint random = randomState(uint(pixel.x), uint(pixel.y), sampleNumber, uint(params.brickCount.w));
   MarchResult result = marchRay(vec2(pixel) + subPixel, random, sampleNumber);
+  vec3 behind = environmentBehind(vec2(pixel) + subPixel, result.opticalDepth);
   vec3 transmittance = exp(-result.opticalDepth);
-  outRadiance = vec4(result.radiance, 1.0 - (transmittance.r + transmittance.g + transmittance.b) / 3.0);
+  outRadiance = vec4(result.radiance + behind, 1.0 - (transmittance.r + transmittance.g + transmittance.b) / 3.0);
   outTransmittance = vec4(transmittance, 1.0);
   outDepth = vec4(result.depth, result.depthWeight, result.cost.x, result.cost.y);
 }

@@ -77,7 +77,7 @@ class App {
     state_.up = state_.view.camera.up;
     state_.title = std::filesystem::path(bricks_.path).filename().string() + ", " + bricks_.gridName;
     state_.notice = sentence;
-    std::cerr << sentence << '\n';
+    std::cerr << sentence << '\n' << describeLight(state_.view) << '\n';
     firstCamera_ = state_.view.camera;
     return firstCamera_;
   }
@@ -141,7 +141,8 @@ class App {
   void switchLook() {
     Look& look = state_.view.scene.look;
     look = look == Look::report ? Look::physical : Look::report;
-    state_.notice = "look: " + nameOf(look) + "; the looks do not differ in anything yet";
+    state_.notice = describeLight(state_.view);
+    restart();
   }
 
   void screenshot() {
@@ -154,7 +155,7 @@ class App {
       path = std::filesystem::path(options_.screenshotFolder) / name.str();
     }
     try {
-      writePicture(path.string(), viewer_->read(), state_.view.scene, state_.exposureEv, false);
+      writePicture(path.string(), viewer_->read(), state_.view, state_.exposureEv, false);
       state_.notice = "wrote " + path.filename().string();
     } catch (const WorldError& error) {  // a folder that cannot be written must not end the session
       state_.notice = error.what();

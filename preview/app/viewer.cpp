@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "preview/behind.h"
 #include "preview/gpu/camera_rays.h"
 
 namespace nephele {
@@ -20,14 +21,8 @@ constexpr int kMostDivisor = 8;
 constexpr double kQuickStepFactor = 3.0;
 
 // As shaders/display.frag declares them.
-enum DisplayLocation : GLint {
-  kBottom = 0,
-  kTop = 1,
-  kEnvironment = 2,
-  kWindowSize = 3,
-  kExposure = 4,
-  kShow = 5
-};
+enum DisplayLocation : GLint { kBottom = 0, kTop = 1, kWindowSize = 3, kExposure = 4, kBehind = 5 };
+constexpr GLuint kParameterBinding = 0;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -54,7 +49,12 @@ Viewer::Viewer(const BrickVolume& bricks, Filter filter, unsigned seed)
       pass_(filter),
       atlas_(bricks, filter),
       display_(buildProgram("screen.vert", "display.frag")),
-      noVertices_(makeVertexArray()) {}
+      displayParameters_(makeBuffer()),
+      noVertices_(makeVertexArray()) {
+  glNamedBufferStorage(displayParameters_.name(), sizeof(shared::MarchParameters), nullptr,
+                       GL_DYNAMIC_STORAGE_BIT);
+  checkGl("making the display's parameters");
+}
 
 void Viewer::restart(const ViewedScene& view, int width, int height) {
   view_ = view;
@@ -62,6 +62,9 @@ void Viewer::restart(const ViewedScene& view, int width, int height) {
   height_ = height;
   quickNeeded_ = true;
   accumulator_.reset();
+  pass_.setEnvironment(view.environmentMap);
+  const shared::MarchParameters parameters = marchParameters(view, bricks_, width, height, seed_, true);
+  glNamedBufferSubData(displayParameters_.name(), 0, sizeof parameters, &parameters);
 }
 
 void Viewer::drawQuick() {
@@ -121,10 +124,11 @@ void Viewer::show(const Scene& scene, double exposureEv, int width, int height) 
   const BackdropColours colours = scene.backdrop.value_or(BackdropColours{});
   setRgb(kBottom, colours.bottom);
   setRgb(kTop, colours.top);
-  setRgb(kEnvironment, scene.environment.constant);
+  pass_.bindEnvironment();
+  glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, displayParameters_.name());
   glUniform2f(kWindowSize, static_cast<float>(width), static_cast<float>(height));
   glUniform1f(kExposure, static_cast<float>(std::exp2(exposureEv)));
-  glUniform1i(kShow, scene.environment.show ? 1 : 0);
+  glUniform1i(kBehind, static_cast<int>(behindOf(scene)));
   constexpr GLsizei kTriangleCorners = 3;
   glDrawArrays(GL_TRIANGLES, 0, kTriangleCorners);
   checkGl("showing the picture");

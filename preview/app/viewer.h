@@ -48,6 +48,7 @@ class Viewer {
   MarchPass pass_;
   BrickAtlas atlas_;
   GlProgram display_;
+  GlBuffer displayParameters_;
   GlVertexArray noVertices_;
   ViewedScene view_;
   int width_ = 0, height_ = 0;

@@ -2,7 +2,7 @@
 #include "preview/gpu/camera_rays.h"
 
 #include "base/error.h"
-#include "scene/light_model.h"
+#include "preview/gpu/light_parameters.h"
 
 #include <cmath>
 #include <glm/matrix.hpp>
@@ -100,6 +100,13 @@ void setLights(shared::MarchParameters& p, const std::vector<Light>& lights, con
 
 }  // namespace
 
+dvec3 viewDirection(const Camera& camera, int width, int height, double x, double y) {
+  const Frame frame = frameOf(camera);
+  const double pixel = 2.0 * std::tan(0.5 * camera.fov) / height;
+  return glm::normalize(frame.forward + pixel * (x - 0.5 * width) * frame.right +
+                        pixel * (0.5 * height - y) * frame.up);
+}
+
 shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolume& bricks, int width,
                                         int height, unsigned seed, bool randomStart) {
   shared::MarchParameters p{};
@@ -118,14 +125,9 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   p.boxMax = row(dvec3(bricks.activeMax - brickCorner));
   if (bricks.empty()) p.boxMin = p.boxMax = vec4(0.0f);  // a box that no ray meets
   const Scene& scene = view.scene;
-  const LightModel light = lightModelOf(scene, view.medium);
-  if (scene.environment.kind != Environment::Kind::constant)
-    throw InputError({}, "an environment by '" + nameOf(scene.environment.kind) + "' is not lit by the march yet",
-                     "use 'constant'");
-  const dvec3 sigmaS = vectorOf(view.medium.sigmaS);
-  p.sigmaT = row(sigmaS + vectorOf(view.medium.sigmaA), view.medium.g);
-  p.sigmaS = row(sigmaS, scene.march.stepVoxels);
-  p.octaves = row(dvec3(light.a, light.b, light.c), 0.0);
+  p.sigmaS.w = static_cast<float>(scene.march.stepVoxels);
+  p.environment.w = kSmallestTransmittance;
+  setLightParameters(p, view, bricks);
   // Products with steps and coefficients must stay floats, and columns below the march's own infinity.
   constexpr double kLargestDensity = 1e15;
   if (bricks.maximum > kLargestDensity)
@@ -133,8 +135,6 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   NEPHELE_CHECK_GT(scene.march.shadowStepVoxels, 0.0);
   NEPHELE_CHECK_LE(1.0, scene.march.shadowGrowth);  // less would never arrive
   p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, 0.0), 0.0);
-  p.environment = row(vectorOf(scene.environment.constant), double{kSmallestTransmittance});
-  p.counts.y = light.octaveCount;
   p.counts.w = randomStart ? 1 : 0;
   p.brickCount = glm::ivec4(bricks.brickCount, static_cast<int>(seed));
   return p;

@@ -16,4 +16,8 @@ namespace nephele {
 shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolume& bricks, int width,
                                         int height, unsigned seed, bool randomStart);
 
+/// The direction, unit and in the world, of the ray through picture position (x, y), pixels from the top left
+/// corner. Throws as marchParameters does for a camera without a direction.
+glm::dvec3 viewDirection(const Camera& camera, int width, int height, double x, double y);
+
 }  // namespace nephele

@@ -54,6 +54,7 @@ class MarchMethod : public Method {
     const auto start = Clock::now();
     const Film film(request.width, request.height);
     pass_->setParameters(marchParameters(view, *bricks_, request.width, request.height, request.seed, true));
+    pass_->setEnvironment(view.environmentMap);
     Accumulator accumulator(request.width, request.height, request.samples, request.seed);
     {
       Progress progress("rendering", accumulator.pixelsTotal(), request.quiet);

@@ -32,6 +32,7 @@ void MarchPass::draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPix
                      const PixelRectangle& where) const {
   film.bindAsTarget();
   atlas.bind();
+  sky_.bind();
   glUseProgram(program_.name());
   glBindVertexArray(noVertices_.name());
   glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, parameters_.name());

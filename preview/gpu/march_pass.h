@@ -9,6 +9,7 @@
 #include "preview/gpu/brick_atlas.h"
 #include "preview/gpu/film.h"
 #include "preview/gpu/shader.h"
+#include "preview/gpu/sky_textures.h"
 #include "shaders/shared/leaves.h"
 
 namespace nephele {
@@ -25,18 +26,23 @@ class MarchPass {
   explicit MarchPass(Filter filter, const std::vector<TextChange>& changes = {});
 
   void setParameters(const shared::MarchParameters& parameters);
+  /// The lat-long picture that the parameters speak of; nullptr where they speak of none. Uploads only what
+  /// is new.
+  void setEnvironment(const std::shared_ptr<const EnvironmentMap>& map) { sky_.set(map); }
+  void bindEnvironment() const { sky_.bind(); }
   /// Adds one sample of each pixel in `where` to the film, seen through picture position (x, y) + subPixel;
   /// `number` is the sample's number. Does not wait for the GPU.
   void draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPixel, unsigned number,
             const PixelRectangle& where) const;
 
   Filter filter() const { return filter_; }
-  uint64_t gpuBytes() const { return sizeof(shared::MarchParameters); }
+  uint64_t gpuBytes() const { return sizeof(shared::MarchParameters) + sky_.gpuBytes(); }
 
  private:
   Filter filter_;
   GlProgram program_;
   GlBuffer parameters_;
+  SkyTextures sky_;
   GlVertexArray noVertices_;
 };
 

@@ -5,8 +5,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "preview/twin/march.h"
-
 namespace nephele {
 namespace {
 
@@ -39,12 +37,12 @@ struct ArrayBricks {
 }  // namespace
 
 std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const MarchParameters& parameters, int width,
-                                    int height, glm::vec2 subPixel, unsigned number) {
+                                    int height, glm::vec2 subPixel, unsigned number, const SkyArrays& sky) {
   std::vector<TwinPixel> pixels(static_cast<size_t>(width) * static_cast<size_t>(height));
-  if (bricks.empty()) return pixels;
+  if (bricks.empty() && parameters.skyForward.w <= 0.0f) return pixels;
   const ArrayBricks source{&bricks};
   tbb::parallel_for(tbb::blocked_range<int>(0, height), [&](const tbb::blocked_range<int>& rows) {
-    March<ArrayBricks> march{parameters, &source};
+    March<ArrayBricks> march{parameters, &source, sky};
     for (int y = rows.begin(); y != rows.end(); ++y) {
       for (int x = 0; x < width; ++x) {
         const vec2 at = vec2(static_cast<float>(x), static_cast<float>(y)) + subPixel;
@@ -53,7 +51,8 @@ std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const MarchParame
         const auto result = march.marchRay(at, random, number);
         TwinPixel& pixel =
             pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
-        pixel = {result.radiance, exp(-result.opticalDepth), result.depth, result.depthWeight, result.cost.x};
+        pixel = {result.radiance + march.environmentBehind(at, result.opticalDepth),
+                 exp(-result.opticalDepth), result.depth, result.depthWeight, result.cost.x};
       }
     }
   });

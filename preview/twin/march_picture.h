@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "shaders/shared/leaves.h"
+#include "preview/twin/march.h"
 #include "volume/bricks.h"
 
 namespace nephele {
@@ -21,8 +21,9 @@ struct TwinPixel {
 /// Marches one ray a pixel, width × height of them, row 0 at the top; pixel (x, y) is seen through picture
 /// position (x, y) + subPixel. `number` is the sample's number and, with the seed in `parameters`, chooses
 /// its random numbers. Runs on all threads; the result does not depend on their number. An empty volume gives
-/// transmittance 1.
+/// transmittance 1. `sky` is looked at where the environment is a lat-long picture.
 std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const shared::MarchParameters& parameters,
-                                    int width, int height, glm::vec2 subPixel, unsigned number);
+                                    int width, int height, glm::vec2 subPixel, unsigned number,
+                                    const shared::SkyArrays& sky = {});
 
 }  // namespace nephele

@@ -1,4 +1,4 @@
-// The leaves of the light's shared text as C++ (phase, random, ray and box, step integral) and the parameter
+// The leaves of the light's shared text as C++ (phase, random, ray and box, chord, powder, step integral) and the parameter
 // struct, in namespace nephele::shared. Depends on GLM alone; the march itself is preview/twin/march.h.
 #pragma once
 
@@ -12,16 +12,19 @@ namespace nephele::shared {
 #include "shaders/shared/phase.glsl"
 #include "shaders/shared/random.glsl"
 #include "shaders/shared/ray_box.glsl"
+#include "shaders/shared/remap.glsl"
+#include "shaders/shared/chord.glsl"
+#include "shaders/shared/powder.glsl"
 #include "shaders/shared/step_integral.glsl"
 
 // std140 puts every member on a multiple of 16 bytes; so must the C++ compiler, since the struct goes up by
 // memcpy.
 inline constexpr size_t kRowBytes = 16;
-inline constexpr size_t kRowsBeforeLights = 24;
+inline constexpr size_t kRowsBeforeLights = 35;
 inline constexpr size_t kRowsPerLight = 3;
 static_assert(sizeof(vec4) == kRowBytes && sizeof(ivec4) == kRowBytes);
 static_assert(sizeof(LightParameters) == kRowsPerLight * kRowBytes);
-static_assert(offsetof(MarchParameters, counts) == 22 * kRowBytes);
+static_assert(offsetof(MarchParameters, counts) == 33 * kRowBytes);
 static_assert(offsetof(MarchParameters, lights) == kRowsBeforeLights * kRowBytes);
 static_assert(sizeof(MarchParameters) == (kRowsBeforeLights + kRowsPerLight * kMaxLights) * kRowBytes);
 

@@ -1,17 +1,18 @@
 // What reaches a point of the medium from lights and sky, and how much of it is scattered along a ray [MODEL.md, section 2].
-// Included as march.glsl is, after walk.glsl.
+// Included as march.glsl is, after walk.glsl and environment.glsl.
 
 // Σ over orders of b^m · phase(c^m g) · e^(−a^m σ_t column), to be multiplied by σ_s and the light's irradiance.
 NPH_FN vec3 scatteredByOrders(vec3 toLight, vec3 ray, float column) {
   vec3 sum = vec3(0.0f);
   float extinction = 1.0f;
   float scattering = 1.0f;
-  float g = params.sigmaT.w;
+  vec3 lobes = vec3(params.phase);
   for (int m = 0; m <= params.counts.y; ++m) {
-    sum += scattering * phaseHenyeyGreenstein(toLight, ray, g) * exp(-(extinction * column) * vec3(params.sigmaT));
+    sum += scattering * phaseFunction(toLight, ray, lobes) * exp(-(extinction * column) * vec3(params.sigmaT));
     extinction *= params.octaves.x;
     scattering *= params.octaves.y;
-    g *= params.octaves.z;
+    lobes.x *= params.octaves.z;
+    lobes.y *= params.octaves.z;
   }
   return sum;
 }
@@ -51,21 +52,51 @@ NPH_FN Lighting lightingFrom(int i, vec3 position) {
 }
 
 // One direction to the sky: half of them follow the phase function, half are uniform, so that the weight stays bounded for
-// all orders. Neighbouring pixels look the same way, so that differences stay smooth; over the picture's samples the
-// directions follow the additive recurrence of preview/gpu/sub_pixels.h, in integers.
+// all orders; from a map, half of all follow its brightness instead. Neighbouring pixels look the same way, so that
+// differences stay smooth; over the picture's samples the directions follow the additive recurrence of
+// preview/gpu/sub_pixels.h, in integers. Which way of drawing has its turn depends on the seed as well.
 NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
-  uint rotation = randomState(place, 0u, 0u, uint(params.brickCount.w));
-  float u1 = float((rotation + number * 3242174889u) >> 8u) * (1.0f / 16777216.0f);
+  uint seed = uint(params.brickCount.w);
+  uint rotation = randomState(place, 0u, 0u, seed);
+  uint bits = rotation + number * 3242174889u;
+  float u1 = float(bits >> 8u) * (1.0f / 16777216.0f);
   float u2 = float((hashBits(rotation) + number * 2447445414u) >> 8u) * (1.0f / 16777216.0f);
-  bool byPhase = ((place + number) & 1u) == 0u;
+  uint turn = place + number + hashBits(seed);
+  bool map = skyKind() == kSkyMap;
+  bool byPhase = (turn & 1u) == 0u;
+  bool byMap = map && (turn & 2u) != 0u;
+  vec3 lobes = vec3(params.phase);
   Lighting l;
-  l.toLight = sampleHenyeyGreenstein(ray, byPhase ? params.sigmaT.w : 0.0f, u1, u2);
+  if (byMap) {
+    uint state = bits;
+    l.toLight = drawFromMap(bits, nextUniform(state), u2);
+  } else if (byPhase) {
+    l.toLight = samplePhaseFunction(ray, lobes, u1, u2);
+  } else {
+    l.toLight = sampleHenyeyGreenstein(ray, 0.0f, u1, u2);
+  }
   l.toLightIndex = l.toLight.x * vec3(params.indexFromWorldX) + l.toLight.y * vec3(params.indexFromWorldY) +
                    l.toLight.z * vec3(params.indexFromWorldZ);
   l.reach = 3.0e38f;
-  float density = 0.5f * phaseHenyeyGreenstein(l.toLight, ray, params.sigmaT.w) + 0.5f * phaseIsotropic();
-  l.irradiance = vec3(params.environment) / density;
+  float density = 0.5f * phaseFunction(l.toLight, ray, lobes) + 0.5f * phaseIsotropic();
+  if (map) density = 0.5f * density + 0.5f * mapDensity(l.toLight);
+  l.irradiance = environmentRadiance(l.toLight) / density;
   return l;
+}
+
+// ∫ ρ ds from a point to a light, by the way that the scene chooses: marched, or the chord at the mean density.
+NPH_FN float columnTowards(vec3 position, vec3 direction, float reach, float enough, float start, NPH_INOUT(vec2) cost) {
+  if (params.chordRadii.w > 0.0f)
+    return params.chordCentre.w *
+           ellipsoidChord(position, direction, vec3(params.chordCentre), vec3(params.chordRadii), reach);
+  return columnDensity(position, direction, reach, enough, start, cost);
+}
+
+// What powder leaves of the light that a place of density `rho` scatters.
+NPH_FN float powderAt(vec3 position, float rho) {
+  if (params.powder.x <= 0.0f) return 1.0f;
+  float height = dot(position, vec3(params.height)) + params.height.w;
+  return powderFactor(params.powder.x, min(rho * params.powder.y, 1.0f), height);
 }
 
 // Source function at a point: Σ over lights and the sky, per unit density, before σ_s. `place` counts the points lit along
@@ -73,7 +104,7 @@ NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
 NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
                          NPH_INOUT(vec2) cost) {
   vec3 sum = vec3(0.0f);
-  bool sky = max(params.environment.x, max(params.environment.y, params.environment.z)) > 0.0f;
+  bool sky = skyKind() != kSkyNone;
   int count = params.counts.x + (sky ? 1 : 0);
   int done = 0;
   for (int i = 0; i < count; ++i) {
@@ -84,7 +115,7 @@ NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint
     } else {
       l = lightingFromSky(ray, place, number);
     }
-    float column = columnDensity(position, l.toLightIndex, l.reach, enough, start, cost);
+    float column = columnTowards(position, l.toLightIndex, l.reach, enough, start, cost);
     sum += l.irradiance * scatteredByOrders(l.toLight, ray, column);
     done += 1;
   }

@@ -58,8 +58,9 @@ NPH_FN MarchResult marchRay(vec2 at, uint random, uint number) {
         vec3 x = (rho * ds) * vec3(params.sigmaT);
         vec3 before = exp(-result.opticalDepth);
         vec3 weight = before * (rho * ds) * stepIntegral(x);
-        share += weight;
-        place += dot(weight, vec3(1.0f / 3.0f)) * middle;
+        vec3 scattering = powderAt(origin + middle * direction, rho) * weight;
+        share += scattering;
+        place += dot(scattering, vec3(1.0f / 3.0f)) * middle;
         result.opticalDepth += x;
         vec3 left = exp(-result.opticalDepth);
         float taken = dot(before - left, vec3(1.0f / 3.0f));

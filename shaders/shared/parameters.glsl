@@ -31,11 +31,22 @@ struct MarchParameters {
   vec4 indexFromWorldZ;
   vec4 boxMin;       // support of the medium, index space
   vec4 boxMax;
-  vec4 sigmaT;       // per unit density per world unit. w: g
+  vec4 sigmaT;       // per unit density per world unit
   vec4 sigmaS;       // w: step, voxels
   vec4 octaves;      // a, b, c
   vec4 shadow;       // x: first step towards a light, voxels. y: growth from each step to the next, at least 1
-  vec4 environment;  // uniform radiance. w: smallest transmittance worth following
+  vec4 phase;        // the phase function's lobes: x: g of the first, y: of the second, z: share of the second
+  vec4 powder;       // x: strength, 0: off. y: 1 / largest density
+  vec4 height;       // of an index position in the cloud, 0 at its base, 1 at its top: dot(xyz, position) + w
+  vec4 chordCentre;  // of the ellipsoid inscribed in the active box, index space. w: mean active density
+  vec4 chordRadii;   // w: 1 where light transmittance is by the chord, else 0
+  vec4 environment;  // radiance, if constant; of the ramp's zenith; factors of a map. w: smallest transmittance worth following
+  vec4 skyHorizon;   // of the ramp. w: its power above
+  vec4 skyGround;    // of the ramp. w: its power below
+  vec4 skyUp;        // unit, world axes. w: kind, see environment.glsl
+  vec4 skyRight;     // axes of a map
+  vec4 skyForward;   // w: 1 where the picture holds the environment behind the medium, else 0
+  ivec4 skySize;     // x, y: texels of a map
   ivec4 counts;      // x: lights. y: octaves beyond the first. w: 1 where steps start at random, 0 midway
   ivec4 brickCount;  // bricks along each axis. w: seed
   LightParameters lights[kMaxLights];

@@ -18,6 +18,17 @@ NPH_FN float phaseHenyeyGreenstein(vec3 toLight, vec3 ray, float g) {
   return (1.0f - size) * (1.0f + size) / (4.0f * kPi * base * sqrt(base));
 }
 
+// The project's one phase function: mix(HG(x), HG(y), z) over the lobes (x, y, z), which integrates to 1 like its parts.
+// (g, 0, 0) is Henyey–Greenstein; (in_s, −out_s, blend) is silver lining plus [Nurage].
+NPH_FN float phaseFunction(vec3 toLight, vec3 ray, vec3 lobes) {
+  float first = phaseHenyeyGreenstein(toLight, ray, lobes.x);
+  if (lobes.z <= 0.0f) return first;
+  return (1.0f - lobes.z) * first + lobes.z * phaseHenyeyGreenstein(toLight, ray, lobes.y);
+}
+
+// Its mean cosine.
+NPH_FN float phaseMeanCosine(vec3 lobes) { return (1.0f - lobes.z) * lobes.x + lobes.z * lobes.y; }
+
 // A direction to the light drawn from Henyey–Greenstein about `ray` by two uniforms in [0, 1) [PBRT, 11.3.1].
 NPH_FN vec3 sampleHenyeyGreenstein(vec3 ray, float g, float u1, float u2) {
   // Below this the inversion divides by almost 0 while the lobe is uniform to the same order.
@@ -32,4 +43,10 @@ NPH_FN vec3 sampleHenyeyGreenstein(vec3 ray, float g, float u1, float u2) {
   vec3 tangent = normalize(cross(helper, ray));
   vec3 bitangent = cross(ray, tangent);
   return cosTheta * ray + sinTheta * (cos(angle) * tangent + sin(angle) * bitangent);
+}
+
+// A direction to the light drawn from the phase function; u1 also chooses the lobe.
+NPH_FN vec3 samplePhaseFunction(vec3 ray, vec3 lobes, float u1, float u2) {
+  if (u1 < lobes.z) return sampleHenyeyGreenstein(ray, lobes.y, u1 / lobes.z, u2);
+  return sampleHenyeyGreenstein(ray, lobes.x, (u1 - lobes.z) / (1.0f - lobes.z), u2);
 }

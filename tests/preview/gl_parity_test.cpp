@@ -15,14 +15,29 @@ constexpr double kGate = 1e-4;
 constexpr glm::vec2 kSubPixel(0.37f, 0.61f);
 constexpr unsigned kNumber = 3;
 
-/// A cloud under all that the march knows: two suns, a point, octaves, sky, colours, random starts, unequal
+/// What lights the cloud: `plain`: marched light under a uniform sky; `report`: all terms of that look under
+/// a ramp; `map`: light by the chord under a lat-long picture that is shown.
+enum class Lit { plain, report, map };
+
+std::shared_ptr<const EnvironmentMap> someMap() {
+  constexpr int kColumns = 24, kRows = 12;
+  std::vector<glm::vec3> texels;
+  for (int i = 0; i < kColumns * kRows; ++i) {
+    const float f = static_cast<float>(i);
+    texels.push_back({0.6f + 0.5f * std::sin(0.7f * f), 0.6f + 0.5f * std::cos(0.31f * f), 0.4f});
+  }
+  texels[3 * kColumns + 15] = glm::vec3(25.0f, 22.0f, 18.0f);
+  return std::make_shared<const EnvironmentMap>(makeEnvironmentMap("made", kColumns, kRows, texels));
+}
+
+/// A cloud under all that the march knows: a sun, a point, octaves, sky, colours, random starts, unequal
 /// voxels.
 struct ParityCase {
   BrickVolume bricks;
   ViewedScene view;
   shared::MarchParameters parameters;
 
-  ParityCase() {
+  explicit ParityCase(Lit lit) {
     glm::dmat4 worldFromIndex(1.0);
     worldFromIndex[0] = glm::dvec4(0.04, 0.01, 0.0, 0.0);
     worldFromIndex[1] = glm::dvec4(-0.01, 0.05, 0.005, 0.0);
@@ -38,19 +53,39 @@ struct ParityCase {
     view.scene.environment.constant = {0.2, 0.3, 0.5};
     view.scene.lights = {Sun{glm::normalize(glm::dvec3(0.3, 0.8, 0.5)), {3.0, 2.8, 2.5}},
                          PointLight{centre + glm::dvec3(-1.0, 0.3, 1.2), {2.0, 1.0, 0.5}}};
+    Environment& environment = view.scene.environment;
+    if (lit == Lit::report) {
+      view.scene.look = Look::report;
+      view.up = glm::normalize(glm::dvec3(0.1, 0.2, 1.0));
+      environment.kind = Environment::Kind::ramp;
+    } else if (lit == Lit::map) {
+      view.scene.lightTransmittance = LightTransmittance::chord;
+      environment.kind = Environment::Kind::exr;
+      environment.exr = {"made", 0.6, 0.8};
+      environment.show = true;
+      view.environmentMap = someMap();
+    }
     parameters = marchParameters(view, bricks, kWidth, kHeight, 7, true);
   }
 };
 
-const ParityCase& parityCase() {
-  static const ParityCase theCase;
-  return theCase;
+const ParityCase& parityCase(Lit lit) {
+  static const ParityCase cases[] = {ParityCase(Lit::plain), ParityCase(Lit::report), ParityCase(Lit::map)};
+  return cases[static_cast<size_t>(lit)];
 }
 
-const std::vector<TwinPixel>& twinPicture() {
-  static const std::vector<TwinPixel> pixels =
-      marchPicture(parityCase().bricks, parityCase().parameters, kWidth, kHeight, kSubPixel, kNumber);
-  return pixels;
+std::vector<TwinPixel> marchOnCpu(const ParityCase& on, unsigned number) {
+  shared::SkyArrays sky;
+  if (on.view.environmentMap)
+    sky = {on.view.environmentMap->texels.data(), on.view.environmentMap->cells.data()};
+  return marchPicture(on.bricks, on.parameters, kWidth, kHeight, kSubPixel, number, sky);
+}
+
+const std::vector<TwinPixel>& twinPicture(Lit lit) {
+  static const std::vector<TwinPixel> pictures[] = {marchOnCpu(parityCase(Lit::plain), kNumber),
+                                                    marchOnCpu(parityCase(Lit::report), kNumber),
+                                                    marchOnCpu(parityCase(Lit::map), kNumber)};
+  return pictures[static_cast<size_t>(lit)];
 }
 
 /// 99th percentile of |a − b|/max(|a|, |b|, 1e-3 of the picture's maximum).
@@ -68,14 +103,15 @@ struct ParityError {
 };
 
 /// Over the pixels that see the medium on either side: empty ones agree trivially.
-ParityError parityOf(const std::vector<TextChange>& changes) {
+ParityError parityOf(Lit lit, const std::vector<TextChange>& changes) {
   needContext();
   MarchPass pass(Filter::exact, changes);
-  pass.setParameters(parityCase().parameters);
-  const Picture gpu = marchOnGpu(pass, parityCase().bricks, kWidth, kHeight, kSubPixel, kNumber).picture;
+  pass.setParameters(parityCase(lit).parameters);
+  pass.setEnvironment(parityCase(lit).view.environmentMap);
+  const Picture gpu = marchOnGpu(pass, parityCase(lit).bricks, kWidth, kHeight, kSubPixel, kNumber).picture;
   std::vector<double> a[2], b[2];
-  for (size_t i = 0; i < twinPicture().size(); ++i) {
-    const TwinPixel& twin = twinPicture()[i];
+  for (size_t i = 0; i < twinPicture(lit).size(); ++i) {
+    const TwinPixel& twin = twinPicture(lit)[i];
     if (twin.transmittance.x == 1.0f && gpu.planes[4][i] == 1.0f) continue;
     for (int c = 0; c < 3; ++c) {
       const size_t plane = static_cast<size_t>(c);
@@ -90,10 +126,13 @@ ParityError parityOf(const std::vector<TextChange>& changes) {
 }
 
 TEST(GlParity, CpuAndGpuAgree) {
-  const ParityError error = parityOf({});
-  std::printf("parity: p99 of radiance %.3g, of transmittance %.3g\n", error.radiance, error.transmittance);
-  EXPECT_LE(error.radiance, kGate);
-  EXPECT_LE(error.transmittance, kGate);
+  for (Lit lit : {Lit::plain, Lit::report, Lit::map}) {
+    const ParityError error = parityOf(lit, {});
+    std::printf("parity, light %d: p99 of radiance %.3g, of transmittance %.3g\n", static_cast<int>(lit),
+                error.radiance, error.transmittance);
+    EXPECT_LE(error.radiance, kGate);
+    EXPECT_LE(error.transmittance, kGate);
+  }
 }
 
 TEST(GlParity, EachMutantBreaksTheGate) {
@@ -101,9 +140,12 @@ TEST(GlParity, EachMutantBreaksTheGate) {
   const char* walk = "shared/walk.glsl";
   const char* light = "shared/light.glsl";
   const char* phase = "shared/phase.glsl";
+  const char* powder = "shared/powder.glsl";
+  const char* sky = "shared/environment.glsl";
   const struct {
     const char* name;
     TextChange change;
+    Lit lit = Lit::plain;
   } mutants[] = {
       {"albedo x 1.001", {march, "source = vec3(params.sigmaS)", "source = 1.001f * vec3(params.sigmaS)"}},
       {"extinction x 1.001",
@@ -116,17 +158,49 @@ TEST(GlParity, EachMutantBreaksTheGate) {
        {walk, "float dt = params.shadow.x / length(direction);",
         "float dt = params.shadow.x / length(direction); tNear += dt;"}},
       {"octaves' b is a", {light, "scattering *= params.octaves.y", "scattering *= params.octaves.x"}},
-      {"octaves' c left out", {light, "g *= params.octaves.z", "g *= 1.0f"}},
+      {"octaves' c left out", {light, "lobes.x *= params.octaves.z", "lobes.x *= 1.0f"}},
+      {"octaves' c left out of the second lobe",
+       {light, "lobes.y *= params.octaves.z", "lobes.y *= 1.0f"},
+       Lit::report},
+      {"lobes the wrong way round",
+       {phase, "lobes.z * phaseHenyeyGreenstein(toLight, ray, lobes.y)",
+        "lobes.z * phaseHenyeyGreenstein(toLight, ray, -lobes.y)"},
+       Lit::report},
+      {"powder's 0.9 is 0.91", {powder, "0.3f, 0.9f, 0.5f", "0.3f, 0.91f, 0.5f"}, Lit::report},
+      {"powder's height left out", {light, "+ params.height.w", "+ 0.0f"}, Lit::report},
+      {"powder also in transmittance",
+       {march, "* vec3(params.sigmaT);",
+        "* vec3(params.sigmaT) * powderAt(origin + middle * direction, rho);"},
+       Lit::report},
+      {"the ramp's power off by 1%",
+       {sky, "above ? params.skyHorizon.w", "above ? 1.01f * params.skyHorizon.w"},
+       Lit::report},
+      {"the ramp upside down", {sky, "bool above = sine >= 0.0f", "bool above = sine <= 0.0f"}, Lit::report},
+      {"the chord's square root left out",
+       {"shared/chord.glsl", "sqrt(inside / dd)", "inside / dd"},
+       Lit::map},
+      {"the chord through the whole ellipsoid",
+       {"shared/chord.glsl", "max(middle - extent, 0.0f)", "(middle - extent)"},
+       Lit::map},
+      {"the map mirrored",
+       {sky, "dot(direction, vec3(params.skyRight))", "-dot(direction, vec3(params.skyRight))"},
+       Lit::map},
+      {"the map half a texel off", {sky, "* float(size.x) - 0.5f", "* float(size.x)"}, Lit::map},
+      {"the map's density left out",
+       {light, "0.5f * density + 0.5f * mapDensity(l.toLight)", "density"},
+       Lit::map},
+      {"the environment not seen through the medium", {sky, "exp(-opticalDepth) *", "1.0f *"}, Lit::map},
       {"point light without falloff",
        {light, "l.irradiance /= l.reach * l.reach", "l.irradiance /= l.reach"}},
       {"sky twice",
-       {light, "vec3(params.environment) / density", "2.0f * vec3(params.environment) / density"}},
+       {light, "environmentRadiance(l.toLight) / density",
+        "2.0f * environmentRadiance(l.toLight) / density"}},
       {"series x/2 -> 0.4 x", {"shared/step_integral.glsl", "x * (0.5f -", "x * (0.4f -"}},
       {"a hundredth of a voxel off",
        {"march.frag", "vec3 f = position - vec3(cell);", "vec3 f = position - vec3(cell) + 0.01;"}},
   };
   for (const auto& mutant : mutants) {
-    const ParityError error = parityOf({mutant.change});
+    const ParityError error = parityOf(mutant.lit, {mutant.change});
     std::printf("mutant '%s': p99 of radiance %.3g, of transmittance %.3g\n", mutant.name, error.radiance,
                 error.transmittance);
     EXPECT_GT(std::max(error.radiance, error.transmittance), kGate) << mutant.name;
@@ -137,11 +211,11 @@ TEST(GlParity, LightingStepsTogetherCostsLittleAccuracy) {
   needContext();
   const auto render = [&](const std::vector<TextChange>& changes) {
     MarchPass pass(Filter::exact, changes);
-    ViewedScene view = parityCase().view;
+    ViewedScene view = parityCase(Lit::plain).view;
     view.scene.environment.constant = {0.0, 0.0,
                                        0.0};  // its directions are random and would drown the difference
-    pass.setParameters(marchParameters(view, parityCase().bricks, kWidth, kHeight, 7, false));
-    return marchOnGpu(pass, parityCase().bricks, kWidth, kHeight, kSubPixel, kNumber);
+    pass.setParameters(marchParameters(view, parityCase(Lit::plain).bricks, kWidth, kHeight, 7, false));
+    return marchOnGpu(pass, parityCase(Lit::plain).bricks, kWidth, kHeight, kSubPixel, kNumber);
   };
   const FilmPicture together = render({});
   const FilmPicture each = render({{"shared/march.glsl", "kLitTogetherSteps = 4", "kLitTogetherSteps = 1"}});

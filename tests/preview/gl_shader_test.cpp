@@ -39,7 +39,10 @@ TEST(GlShader, ParameterOffsetsAreTheDrivers) {
       OFFSET(rayDy),           OFFSET(worldFromIndexX), OFFSET(worldFromIndexY), OFFSET(worldFromIndexZ),
       OFFSET(indexFromWorldX), OFFSET(indexFromWorldY), OFFSET(indexFromWorldZ), OFFSET(boxMin),
       OFFSET(boxMax),          OFFSET(sigmaT),          OFFSET(sigmaS),          OFFSET(octaves),
-      OFFSET(environment),     OFFSET(counts),          OFFSET(brickCount)};
+      OFFSET(shadow),          OFFSET(phase),           OFFSET(powder),          OFFSET(height),
+      OFFSET(chordCentre),     OFFSET(chordRadii),      OFFSET(environment),     OFFSET(skyHorizon),
+      OFFSET(skyGround),       OFFSET(skyUp),           OFFSET(skyRight),        OFFSET(skyForward),
+      OFFSET(skySize),         OFFSET(counts),          OFFSET(brickCount)};
 #undef OFFSET
   for (const auto& member : members)
     EXPECT_EQ(driverOffset(program, std::string("params.") + member.name), static_cast<GLint>(member.offset))

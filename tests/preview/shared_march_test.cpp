@@ -91,7 +91,8 @@ TEST(SharedMarch, UniformSkyThroughThinMediumGivesOpticalDepth) {
   const FullBricks bricks;
   auto p = parametersFor(40.0f, 168.0f, 1e-7f);
   p.environment = vec4(1.0f, 1.0f, 1.0f, 1e-6f);
-  p.sigmaT.w = 0.7f;
+  p.skyUp = vec4(0.0f, 0.0f, 1.0f, float(March<FullBricks>::kSkyConstant));
+  p.phase = vec4(0.7f, -0.4f, 0.3f, 0.0f);
   March<FullBricks> march{p, &bricks};
   constexpr int kRays = 4000;
   double mean = 0.0;
@@ -99,6 +100,98 @@ TEST(SharedMarch, UniformSkyThroughThinMediumGivesOpticalDepth) {
     mean += double{march.marchRay(vec2(0.0f), hashBits(i), i).radiance.x} / kRays;
   // 32 directions a ray of variance below 1: 4000 rays leave 3e-3 at one deviation.
   EXPECT_NEAR(mean / (128.0 * 1e-7), 1.0, 1.2e-2);
+}
+
+/// A slab so thin that nothing in it is shaded, lit by one sun along `toLight`.
+MarchParameters thinSlab(const vec3& toLight) {
+  auto p = parametersFor(100.0f, 108.0f, 1e-7f);
+  p.counts.x = 1;
+  p.lights[0] = {vec4(toLight, float(kLightSun)), vec4(toLight, 0.0f), vec4(1.0f)};
+  return p;
+}
+
+TEST(SharedMarch, OctavesSumTheirOrders) {
+  // Optical depth x ≪ 1: x Σ b^m p(c^m g), p at the angle between light and view.
+  const FullBricks bricks;
+  const double g = 0.8, b = 0.6, c = 0.5, depth = 8.0 * 1e-7;
+  auto p = thinSlab(vec3(0.6f, 0.0f, 0.8f));
+  p.phase = vec4(static_cast<float>(g), 0.0f, 0.0f, 0.0f);
+  p.octaves = vec4(0.3f, static_cast<float>(b), static_cast<float>(c), 0.0f);
+  for (int count : {0, 1, 5}) {
+    p.counts.y = count;
+    double expected = 0.0;
+    for (int m = 0; m <= count; ++m) {
+      const double gm = g * std::pow(c, m);
+      expected += depth * std::pow(b, m) * (1.0 - gm * gm) /
+                  (4.0 * std::numbers::pi * std::pow(1.0 + gm * gm - 2.0 * gm * 0.6, 1.5));
+    }
+    const double actual = double{March<FullBricks>{p, &bricks}.marchRay(vec2(0.0f), 1u, 0u).radiance.x};
+    EXPECT_NEAR(actual / expected, 1.0, 1e-4) << count;
+  }
+}
+
+TEST(SharedMarch, OctavesSeeTheLightThroughAPowerOfTheExtinction) {
+  // A slab of depth 2, the sun straight ahead: order m adds b^m x/(4π) ∫ e^(−x s) e^(−a^m x (1 − s)) ds.
+  const FullBricks bricks;
+  auto p = parametersFor(20.0f, 84.0f, 2.0f / 64.0f);
+  p.counts.x = 1;
+  p.lights[0] = {vec4(1.0f, 0.0f, 0.0f, float(kLightSun)), vec4(1.0f, 0.0f, 0.0f, 0.0f), vec4(1.0f)};
+  p.sigmaS.w = 0.05f;
+  p.shadow = vec4(0.05f, 1.0f, 0.0f, 0.0f);
+  p.counts.y = 2;
+  p.octaves = vec4(0.5f, 0.4f, 1.0f, 0.0f);
+  const double x = 2.0;
+  double expected = 0.0;
+  for (int m = 0; m <= 2; ++m) {
+    const double ax = std::pow(0.5, m) * x;
+    const double integral = m == 0 ? std::exp(-x) : (std::exp(-ax) - std::exp(-x)) / (x - ax);
+    expected += std::pow(0.4, m) * x * integral / (4.0 * std::numbers::pi);
+  }
+  const double actual = double{March<FullBricks>{p, &bricks}.marchRay(vec2(0.0f), 1u, 0u).radiance.x};
+  EXPECT_NEAR(actual / expected, 1.0, 2e-3);
+}
+
+TEST(SharedMarch, PowderScalesWhatIsScatteredAndNothingElse) {
+  const FullBricks bricks;
+  auto p = thinSlab(vec3(0.0f, 0.0f, 1.0f));
+  March<FullBricks> march{p, &bricks};
+  const auto without = march.marchRay(vec2(0.0f), 1u, 0u);
+  march.params.powder = vec4(0.5f, 0.25f, 0.0f, 0.0f);  // density 1 of at most 4
+  march.params.height = vec4(0.0f, 0.0f, 1.0f / 208.0f, 0.0f);
+  const auto with = march.marchRay(vec2(0.0f), 1u, 0u);
+  EXPECT_NEAR(double{with.radiance.x / without.radiance.x}, double{powderFactor(0.5f, 0.25f, 0.5f)}, 1e-6);
+  EXPECT_EQ(with.opticalDepth.x, without.opticalDepth.x);
+}
+
+TEST(SharedMarch, ChordLightsAHomogeneousBallAsMarchingDoes) {
+  // The ellipsoid inscribed in a cube, but the cube is full: at its centre both see the same way out along an
+  // axis.
+  const FullBricks bricks;
+  auto p = parametersFor(103.9f, 104.1f, 0.01f);
+  p.boxMin.y = p.boxMin.z = 4.0f;
+  p.boxMax.y = p.boxMax.z = 204.0f;
+  p.counts.x = 1;
+  p.lights[0] = {vec4(0.0f, 0.0f, 1.0f, float(kLightSun)), vec4(0.0f, 0.0f, 1.0f, 0.0f), vec4(1.0f)};
+  p.shadow = vec4(0.05f, 1.0f, 0.0f, 0.0f);
+  March<FullBricks> march{p, &bricks};
+  const double marched = double{march.marchRay(vec2(0.0f), 1u, 0u).radiance.x};
+  march.params.chordCentre = vec4(104.0f, 104.0f, 104.0f, 1.0f);
+  march.params.chordRadii = vec4(100.0f, 100.0f, 100.0f, 1.0f);
+  const auto chord = march.marchRay(vec2(0.0f), 1u, 0u);
+  EXPECT_NEAR(double{chord.radiance.x} / marched, 1.0, 1e-4);
+  march.params.chordCentre.w = 0.5f;
+  EXPECT_NEAR(double{march.marchRay(vec2(0.0f), 1u, 0u).radiance.x} / marched, std::exp(0.5), 1e-3);
+}
+
+TEST(SharedMarch, EnvironmentBehindIsSeenThroughTheMedium) {
+  const FullBricks bricks;
+  auto p = parametersFor(40.0f, 168.0f, 0.0f);
+  p.environment = vec4(1.0f, 2.0f, 3.0f, 1e-6f);
+  p.skyUp = vec4(0.0f, 0.0f, 1.0f, float(March<FullBricks>::kSkyConstant));
+  March<FullBricks> march{p, &bricks};
+  EXPECT_EQ(march.environmentBehind(vec2(0.0f), vec3(0.0f)).y, 0.0f) << "not asked for";
+  march.params.skyForward.w = 1.0f;
+  EXPECT_NEAR(double{march.environmentBehind(vec2(0.0f), vec3(0.5f)).y}, 2.0 * std::exp(-0.5), 1e-6);
 }
 
 TEST(SharedMarch, NoLightNoMediumNothing) {

@@ -1,0 +1,217 @@
+// The environment's shared text: against the double-precision witness in scene/, closed forms of its energy,
+// and directions drawn without bias.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "preview/gpu/light_parameters.h"
+#include "preview/twin/march.h"
+#include "scene/sky.h"
+
+namespace nephele::shared {
+namespace {
+
+constexpr double kPiDouble = std::numbers::pi;
+
+struct NoBricks {
+  uint slot(ivec3) const { return 0u; }
+  float density(uint, vec3) const { return 0.0f; }
+};
+struct FullBricks {
+  uint slot(ivec3) const { return 1u; }
+  float density(uint, vec3) const { return 1.0f; }
+};
+
+ViewedScene rampView(double cloudiness, const glm::dvec3& up) {
+  ViewedScene view;
+  view.up = up;
+  view.scene.environment.kind = Environment::Kind::ramp;
+  view.scene.environment.ramp = {{0.3, 0.2, 0.1}, {0.9, 1.0, 1.1}, {0.1, 0.3, 0.8}, cloudiness, 1.5};
+  return view;
+}
+
+ViewedScene mapView(int width, int height, double rotation) {
+  std::vector<glm::vec3> texels;
+  for (int i = 0; i < width * height; ++i) {
+    const float f = static_cast<float>(i);
+    texels.push_back({1.0f + std::sin(0.7f * f), 1.0f + std::cos(0.9f * f), 0.5f});
+  }
+  texels[static_cast<size_t>(width * height / 3)] = glm::vec3(80.0f, 60.0f, 40.0f);
+  ViewedScene view;
+  view.scene.environment.kind = Environment::Kind::exr;
+  view.scene.environment.exr = {"made", rotation, 0.7};
+  view.environmentMap =
+      std::make_shared<const EnvironmentMap>(makeEnvironmentMap("made", width, height, std::move(texels)));
+  return view;
+}
+
+/// The shared text over the environment of a view.
+March<NoBricks> marchOver(const ViewedScene& view) {
+  MarchParameters p{};
+  setLightParameters(p, view, BrickVolume{});
+  March<NoBricks> march{p, nullptr};
+  if (view.environmentMap)
+    march.skyArrays = {view.environmentMap->texels.data(), view.environmentMap->cells.data()};
+  return march;
+}
+
+/// Directions spread evenly over the sphere: a Fibonacci spiral.
+glm::dvec3 spiral(int i, int count) {
+  const double z = 1.0 - (2.0 * i + 1.0) / count, angle = kPiDouble * (3.0 - std::sqrt(5.0)) * i;
+  const double r = std::sqrt(1.0 - z * z);
+  return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
+TEST(SharedSky, AngleIsTheArcTangent) {
+  March<NoBricks> march{};
+  double worst = 0.0;
+  for (double angle = -kPiDouble + 1e-3; angle < kPiDouble; angle += 1e-3) {
+    const float y = static_cast<float>(3.0 * std::sin(angle)), x = static_cast<float>(3.0 * std::cos(angle));
+    worst = std::max(worst, std::abs(double{march.angleOf(y, x)} - std::atan2(double{y}, double{x})));
+  }
+  EXPECT_LT(worst, 5e-7);
+  EXPECT_EQ(march.angleOf(0.0f, 0.0f), 0.0f);
+  EXPECT_NEAR(double{march.angleOf(0.0f, -2.0f)}, kPiDouble, 1e-6);
+}
+
+TEST(SharedSky, EachKindIsTheWitnesses) {
+  ViewedScene constant;
+  constant.scene.environment.constant = {0.1, 0.2, 0.3};
+  for (const ViewedScene& view : {constant, rampView(0.0, {0, 0, 1}), rampView(1.0, {0, 1, 0}),
+                                  mapView(37, 19, 0.4), mapView(1, 1, 0.0)}) {
+    March<NoBricks> march = marchOver(view);
+    constexpr int kDirections = 2000;
+    for (int i = 0; i < kDirections; ++i) {
+      const glm::dvec3 d = spiral(i, kDirections);
+      const glm::dvec3 expected = skyRadiance(view.scene.environment, view.environmentMap.get(), view.up, d);
+      const vec3 actual = march.environmentRadiance(vec3(d));
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(double{actual[c]}, expected[c], 5e-4 * std::max(1.0, expected[c]))
+            << nameOf(view.scene.environment.kind) << ' ' << i;
+    }
+  }
+}
+
+TEST(SharedSky, RampsEnergyHasItsClosedForm) {
+  // Over a half of the sphere ∫ L dΩ = 2π (far + (horizon − far)/(n + 1)), and the irradiance from above
+  // ∫ L z dΩ = 2π (far/2 + (horizon − far)/((n + 1)(n + 2))).
+  for (double cloudiness : {0.0, 0.4, 1.0}) {
+    const ViewedScene view = rampView(cloudiness, {0, 0, 1});
+    March<NoBricks> march = marchOver(view);
+    const RampShape shape = rampShape(cloudiness);
+    double above = 0.0, irradiance = 0.0, below = 0.0;
+    constexpr int kNodes = 40000;
+    for (int i = 0; i < kNodes; ++i) {
+      const double z = (i + 0.5) / kNodes;
+      const double up = double{march.rampRadiance(static_cast<float>(z)).z};
+      above += 2.0 * kPiDouble * up / kNodes;
+      irradiance += 2.0 * kPiDouble * up * z / kNodes;
+      below += 2.0 * kPiDouble * double{march.rampRadiance(static_cast<float>(-z)).z} / kNodes;
+    }
+    const double n = shape.skyPower, m = shape.groundPower, ground = 1.5 * shape.groundFactor * 0.1;
+    const double zenith = 1.5 * 0.8, horizon = 1.5 * 1.1;
+    EXPECT_NEAR(above, 2.0 * kPiDouble * (zenith + (horizon - zenith) / (n + 1.0)), 1e-3);
+    EXPECT_NEAR(irradiance, 2.0 * kPiDouble * (0.5 * zenith + (horizon - zenith) / ((n + 1.0) * (n + 2.0))),
+                1e-3);
+    EXPECT_NEAR(below, 2.0 * kPiDouble * (ground + (horizon - ground) / (m + 1.0)), 1e-3);
+  }
+}
+
+TEST(SharedSky, DirectionsDrawnFromAMapHaveTheDensityItSays) {
+  const ViewedScene view = mapView(40, 20, 0.8);
+  March<NoBricks> march = marchOver(view);
+  // Σ 1/density over draws is the solid angle of all cells that can be drawn: the whole sphere here.
+  constexpr int kDraws = 400000;
+  double solidAngle = 0.0, energy = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    uint state = static_cast<uint>(i);
+    const uint bits = static_cast<uint>(i) * 2654435769u;
+    const float u1 = nextUniform(state), u2 = nextUniform(state);
+    const vec3 d = march.drawFromMap(bits, u1, u2);
+    EXPECT_NEAR(double{dot(d, d)}, 1.0, 1e-5);
+    const double density = double{march.mapDensity(d)};
+    ASSERT_GT(density, 0.0);
+    solidAngle += 1.0 / density / kDraws;
+    energy += double{march.environmentRadiance(d).x} / density / kDraws;
+  }
+  double expected = 0.0;
+  constexpr int kDirections = 400000;
+  for (int i = 0; i < kDirections; ++i)
+    expected +=
+        4.0 * kPiDouble / kDirections *
+        skyRadiance(view.scene.environment, view.environmentMap.get(), view.up, spiral(i, kDirections)).x;
+  EXPECT_NEAR(solidAngle / (4.0 * kPiDouble), 1.0, 1e-2);
+  EXPECT_NEAR(energy / expected, 1.0, 1e-2);
+}
+
+TEST(SharedSky, EveryKindLightsAThinMediumByItsMean) {
+  // Optical depth x ≪ 1, isotropic: the mean over directions times x, from every way of drawing them.
+  for (const ViewedScene& view : {rampView(0.3, {0, 0, 1}), mapView(16, 8, 0.0)}) {
+    const FullBricks bricks;
+    MarchParameters p{};
+    setLightParameters(p, view, BrickVolume{});
+    p.originCorner = vec4(0.0f, 104.0f, 104.0f, 0.0f);
+    p.directionCorner = p.rayCorner = vec4(1.0f, 0.0f, 0.0f, 0.0f);
+    p.worldFromIndexX = p.indexFromWorldX = vec4(1.0f, 0.0f, 0.0f, 0.0f);
+    p.worldFromIndexY = p.indexFromWorldY = vec4(0.0f, 1.0f, 0.0f, 0.0f);
+    p.worldFromIndexZ = p.indexFromWorldZ = vec4(0.0f, 0.0f, 1.0f, 0.0f);
+    p.boxMin = vec4(100.0f, 0.0f, 0.0f, 0.0f);
+    p.boxMax = vec4(108.0f, 208.0f, 208.0f, 0.0f);
+    p.sigmaT = vec4(vec3(1e-7f), 0.0f);
+    p.sigmaS = vec4(vec3(1e-7f), 0.5f);
+    p.phase = vec4(0.0f);
+    p.shadow = vec4(4.0f, 2.0f, 0.0f, 0.0f);
+    p.environment.w = 1e-6f;
+    p.brickCount = ivec4(26, 26, 26, 0);
+    March<FullBricks> march{p, &bricks};
+    if (view.environmentMap)
+      march.skyArrays = {view.environmentMap->texels.data(), view.environmentMap->cells.data()};
+    constexpr int kRays = 20000, kDirections = 100000;
+    double mean = 0.0, expected = 0.0;
+    for (uint i = 0; i < kRays; ++i)
+      mean += double{march.marchRay(vec2(0.0f), hashBits(i), i).radiance.x} / kRays;
+    for (int i = 0; i < kDirections; ++i)
+      expected +=
+          skyRadiance(view.scene.environment, view.environmentMap.get(), view.up, spiral(i, kDirections)).x /
+          kDirections;
+    EXPECT_NEAR(mean / (8.0 * 1e-7) / expected, 1.0, 1.5e-2) << nameOf(view.scene.environment.kind);
+  }
+}
+
+TEST(LightParameters, HeightRunsOverTheWorldBoxOfTheActiveVoxels) {
+  glm::dmat4 worldFromIndex(1.0);
+  worldFromIndex[0] = glm::dvec4(0.0, 0.0, -0.5, 0.0);  // the index's x falls along the world's z
+  worldFromIndex[2] = glm::dvec4(2.0, 0.0, 0.0, 0.0);
+  worldFromIndex[3] = glm::dvec4(5.0, 6.0, 7.0, 1.0);
+  const BrickVolume bricks =
+      bricksFromDense(std::vector<float>(6 * 8 * 10, 2.0f), {6, 8, 10}, {-3, 4, 5}, worldFromIndex);
+  MarchParameters p{};
+  setLightParameters(p, ViewedScene{}, bricks);
+  const auto height = [&](double x) {
+    const glm::dvec3 position = glm::dvec3(x, 6.0, 7.0) - glm::dvec3(bricks.brickMin * kBrickCells);
+    return double{dot(vec3(position), vec3(p.height)) + p.height.w};
+  };
+  EXPECT_NEAR(height(-3.5), 1.0, 1e-6);
+  EXPECT_NEAR(height(2.5), 0.0, 1e-6);
+  EXPECT_NEAR(double{p.powder.y}, 0.5, 1e-6);
+  EXPECT_EQ(p.powder.x, 0.0f) << "physical";
+  EXPECT_NEAR(double{p.chordRadii.y}, 4.0, 1e-6);
+  EXPECT_NEAR(double{p.chordCentre.w}, 2.0, 1e-6);
+}
+
+TEST(LightParameters, NumbersKindsAsTheSharedTextDoes) {
+  using M = March<NoBricks>;
+  EXPECT_EQ(marchOver(ViewedScene{}).skyKind(), M::kSkyNone);
+  ViewedScene constant;
+  constant.scene.environment.constant = {0.1, 0.0, 0.0};
+  EXPECT_EQ(marchOver(constant).skyKind(), M::kSkyConstant);
+  EXPECT_EQ(marchOver(rampView(0.0, {0, 0, 1})).skyKind(), M::kSkyRamp);
+  EXPECT_EQ(marchOver(mapView(2, 2, 0.0)).skyKind(), M::kSkyMap);
+  EXPECT_EQ(M::kSkyCellsAround, kEnvironmentCellsAround);
+  EXPECT_EQ(M::kSkyCellsUp, kEnvironmentCellsUp);
+  EXPECT_EQ(1 << (32 - M::kSkyCellShift), kEnvironmentCells);
+}
+
+}  // namespace
+}  // namespace nephele::shared
