@@ -1,13 +1,15 @@
-// Reads and writes .vdb files through OpenVDB. Depends on base and OpenVDB.
+// Reads and writes .vdb files. Depends on base and OpenVDB.
 #include "volume/vdb_file.h"
 
 #include <charconv>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "volume/vdb_header.h"
+#include "volume/vdb_writer.h"
 
 namespace nephele {
 namespace {
@@ -81,9 +83,10 @@ uint64_t writeVdb(const std::string& path, const openvdb::GridCPtrVec& grids, co
   initializeOpenVdb();
   writeWhole(path, [&](const std::string& temporary) {
     try {
-      openvdb::io::File file(temporary);
-      file.setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
-      file.write(grids, metadataOf(provenance));
+      std::ofstream file;
+      file.exceptions(std::ios::failbit | std::ios::badbit);
+      file.open(temporary, std::ios::binary | std::ios::trunc);
+      writeVdbTo(file, grids, metadataOf(provenance));
       file.close();
       readVdbHeader(temporary);  // a full disk is not always told otherwise
     } catch (const openvdb::Exception& error) {
