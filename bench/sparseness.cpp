@@ -17,7 +17,7 @@ extern char** environ;
 namespace nephele::bench {
 namespace {
 
-constexpr double kDomainEdge = 384.0;  // voxels
+constexpr double kDomainEdge = 512.0;  // voxels, as the box of the fog ball
 constexpr double kMegabyte = 1e6;
 
 FieldPtr fogIn(const FieldPtr& where) {
