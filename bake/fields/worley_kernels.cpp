@@ -4,6 +4,7 @@
 
 #include "bake/fields/cell_place.h"
 #include "bake/fields/shared_text.h"
+#include "bake/fields/worley_strewn.h"
 
 // Vectors of a size that is unknown until run time can be held in no array, as these kernels do.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
@@ -238,8 +239,12 @@ void worleyAtPoints(const WorleyNoise& noise, const Points& points, float* value
     (features, noise.output, places.x, places.y, places.z, points.count, values);
     return;
   }
-  // Points strewn over many cells, as under a wild warp: each by the definition.
-  for (size_t n = 0; n < points.count; ++n) {
+  // Points strewn over many cells, as under a wild warp: each looks round by itself.
+  const bool plain = noise.period == 0 && !noise.turn.evolves;
+  const size_t done = plain ? worleyStrewn(noise, {px.cell, py.cell, pz.cell, places.x, places.y, places.z},
+                                           points.count, values)
+                            : 0;
+  for (size_t n = done; n < points.count; ++n) {
     const glm::vec3 whole(std::floor(places.x[n]), std::floor(places.y[n]), std::floor(places.z[n]));
     const glm::ivec3 cell(cellAfter(px.cell, whole.x), cellAfter(py.cell, whole.y),
                           cellAfter(pz.cell, whole.z));

@@ -99,6 +99,56 @@ TEST(WorleyKernels, AgreeWithTheDefinition) {
   EXPECT_LE(largest, 4e-6f);
 }
 
+/// Points so far apart that each has cells of its own.
+struct Strewn {
+  std::vector<float> x, y, z;
+  Points points() const { return {glm::dvec3(0.3, -7.1, 4e5), x.size(), x.data(), y.data(), z.data()}; }
+};
+Strewn strewn(size_t count) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> place(-300.0f, 300.0f);
+  Strewn list;
+  for (size_t n = 0; n < count; ++n) {
+    list.x.push_back(place(random));
+    list.y.push_back(place(random));
+    list.z.push_back(place(random));
+  }
+  return list;
+}
+std::vector<WorleyNoise> strewnNoises() {
+  std::vector<WorleyNoise> list;
+  for (const WorleyOutput output : {WorleyOutput::f1, WorleyOutput::f2, WorleyOutput::f2MinusF1})
+    for (const float jitter : {1.0f, 0.4f}) list.push_back({2.7, jitter, 77u, 0, output});
+  list.push_back({2.7, 1.0f, 77u, 5, WorleyOutput::f1});
+  return list;
+}
+
+TEST(WorleyKernels, StrewnPointsAgreeWithTheDefinition) {
+  const Strewn places = strewn(kBlockPoints - 3);  // no whole number of vectors
+  for (const WorleyNoise& noise : strewnNoises()) {
+    std::vector<float> values(places.x.size());
+    worleyAtPoints(noise, places.points(), values.data());
+    // 300 units of a float's rounding, in cells.
+    for (size_t n = 0; n < values.size(); ++n)
+      ASSERT_NEAR(values[n],
+                  worleyAt(noise, places.points().origin + glm::dvec3(places.x[n], places.y[n], places.z[n])),
+                  4e-5);
+  }
+}
+
+TEST(WorleyKernels, StrewnPointsGiveEqualBitsOnEveryTarget) {
+  const Strewn places = strewn(kBlockPoints);
+  expectEqualBitsOnEveryTarget([&] {
+    std::vector<float> all;
+    for (const WorleyNoise& noise : strewnNoises()) {
+      std::vector<float> values(kBlockPoints);
+      worleyAtPoints(noise, places.points(), values.data());
+      all.insert(all.end(), values.begin(), values.end());
+    }
+    return all;
+  });
+}
+
 TEST(WorleyKernels, EveryTargetGivesEqualBits) {
   const auto all = cases();
   expectEqualBitsOnEveryTarget([&] {
