@@ -20,6 +20,10 @@ namespace nephele {
 // A box of at most this many cells along an axis needs at most 9³ cells: √3 more on each side.
 constexpr double kWidestBox = 4.0;
 constexpr int kMostFeatures = 9 * 9 * 9;
+// From this width on, in cells, points fare better each with cells of its own than with features gathered for
+// all; with very few points a vector is not filled.
+constexpr float kStrewn = 1.5f;
+constexpr size_t kFewPoints = 16;
 // The widest vector's bytes. (HWY_ALIGN is that of one target, and these arrays serve all.)
 constexpr size_t kVectorBytes = 64;
 
@@ -164,20 +168,32 @@ namespace {
 
 int rankOf(WorleyOutput output) { return output == WorleyOutput::f1 ? 1 : 2; }
 
+constexpr size_t kPadding = 16;  // floats of the widest vector
+
 /// Places in cells relative to the first cell, padded for whole vectors.
 struct Places {
-  alignas(kVectorBytes) float x[kBlockPoints + 16];
-  alignas(kVectorBytes) float y[kBlockPoints + 16];
-  alignas(kVectorBytes) float z[kBlockPoints + 16];
+  alignas(kVectorBytes) float x[kBlockPoints + kPadding];
+  alignas(kVectorBytes) float y[kBlockPoints + kPadding];
+  alignas(kVectorBytes) float z[kBlockPoints + kPadding];
 };
 
-/// The box that holds x[0…count), along one axis.
-void spanOf(const float* x, size_t count, float& low, float& high) {
-  low = high = x[0];
-  for (size_t n = 1; n < count; ++n) {
-    low = std::min(low, x[n]);
-    high = std::max(high, x[n]);
-  }
+/// to[n] = fraction + from[n] · frequency along one axis, then 15 times the last; [low, high] holds them all.
+void placeAlong(const float* from, size_t count, float fraction, float frequency, float* to, float& low,
+                float& high) {
+  for (size_t n = 0; n < count; ++n) to[n] = fraction + from[n] * frequency;
+  std::fill_n(to + count, kPadding, to[count - 1]);
+  // Lanes of their own, which compilers turn into vectors.
+  float least[kPadding], most[kPadding];
+  std::copy_n(to, kPadding, least);
+  std::copy_n(to, kPadding, most);
+  for (size_t n = 0; n < count; n += kPadding)
+    for (size_t lane = 0; lane < kPadding; ++lane) {
+      const float v = to[n + lane];
+      least[lane] = v < least[lane] ? v : least[lane];
+      most[lane] = v > most[lane] ? v : most[lane];
+    }
+  low = *std::min_element(least, least + kPadding);
+  high = *std::max_element(most, most + kPadding);
 }
 
 /// The definition at the place f in a cell.
@@ -220,18 +236,21 @@ void worleyAtPoints(const WorleyNoise& noise, const Points& points, float* value
                   py = cellPlace(points.origin.y, noise.cellSize),
                   pz = cellPlace(points.origin.z, noise.cellSize);
   const float frequency = float(1.0 / noise.cellSize);
-  Places places{};
-  for (size_t n = 0; n < points.count; ++n) {
-    places.x[n] = px.fraction + points.x[n] * frequency;
-    places.y[n] = py.fraction + points.y[n] * frequency;
-    places.z[n] = pz.fraction + points.z[n] * frequency;
-  }
+  Places places;
   glm::vec3 low, high;
-  spanOf(places.x, points.count, low.x, high.x);
-  spanOf(places.y, points.count, low.y, high.y);
-  spanOf(places.z, points.count, low.z, high.z);
+  placeAlong(points.x, points.count, px.fraction, frequency, places.x, low.x, high.x);
+  placeAlong(points.y, points.count, py.fraction, frequency, places.y, low.y, high.y);
+  placeAlong(points.z, points.count, pz.fraction, frequency, places.z, low.z, high.z);
   const glm::vec3 size = high - low;
-  if (std::max({size.x, size.y, size.z}) <= float(kWidestBox)) {
+  const float widest = std::max({size.x, size.y, size.z});
+  const bool gathered = widest <= float(kWidestBox);
+  // Points strewn over many cells, as under a wild warp: each looks round by itself.
+  const bool plain = noise.period == 0 && !noise.turn.evolves;
+  if (plain && widest > kStrewn && points.count >= kFewPoints &&
+      worleyStrewn(noise, {px.cell, py.cell, pz.cell, places.x, places.y, places.z},
+                   gathered ? Frame::firstCell : Frame::ownCell, points.count, values))
+    return;
+  if (gathered) {
     Features features;
     HWY_DYNAMIC_DISPATCH(gatherFeatures)
     (noise, {px.cell, py.cell, pz.cell}, low, high, rankOf(noise.output), features);
@@ -239,12 +258,7 @@ void worleyAtPoints(const WorleyNoise& noise, const Points& points, float* value
     (features, noise.output, places.x, places.y, places.z, points.count, values);
     return;
   }
-  // Points strewn over many cells, as under a wild warp: each looks round by itself.
-  const bool plain = noise.period == 0 && !noise.turn.evolves;
-  const size_t done = plain ? worleyStrewn(noise, {px.cell, py.cell, pz.cell, places.x, places.y, places.z},
-                                           points.count, values)
-                            : 0;
-  for (size_t n = done; n < points.count; ++n) {
+  for (size_t n = 0; n < points.count; ++n) {
     const glm::vec3 whole(std::floor(places.x[n]), std::floor(places.y[n]), std::floor(places.z[n]));
     const glm::ivec3 cell(cellAfter(px.cell, whole.x), cellAfter(py.cell, whole.y),
                           cellAfter(pz.cell, whole.z));

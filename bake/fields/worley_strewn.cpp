@@ -3,6 +3,8 @@
 // worley_strewn.h, Highway, shared text.
 #include "bake/fields/worley_strewn.h"
 
+#include <algorithm>
+
 #include "bake/fields/shared_text.h"
 
 // Vectors of a size that is unknown until run time can be held in no array, as this kernel does.
@@ -67,49 +69,52 @@ HWY_INLINE VU hashed(VU key) {
   return hn::Xor(h, hn::ShiftRight<15>(h));
 }
 
-// One axis for a vector of points: the place in the own cell, the keys of the five cells along it, and the
-// squared gaps to them.
+// One axis for a vector of points: the place and the own cell's corner in the frame asked for, the keys of
+// the five cells along it, and the squared gaps to them.
 struct Along {
-  V place;
+  V place, corner;
   VU key[CellsAround::kEdge];
   V gap[CellsAround::kEdge];
 
-  HWY_INLINE void set(const float* places, int32_t cell, uint32_t prime) {
+  HWY_INLINE void set(const float* places, int32_t cell, Frame frame, uint32_t prime) {
     const Tag d;
     const UTag du;
     const hn::RebindToSigned<Tag> di;
     const V along = hn::LoadU(d, places), whole = hn::Floor(along);
-    place = hn::Sub(along, whole);
+    const V inside = hn::Sub(along, whole);
+    place = frame == Frame::ownCell ? inside : along;
+    corner = frame == Frame::ownCell ? hn::Zero(d) : whole;
     const VU own = hn::Add(hn::BitCast(du, hn::ConvertTo(di, whole)), hn::Set(du, uint32_t(cell)));
     const VU first = hn::Mul(own, hn::Set(du, prime));
     for (int n = 0; n < CellsAround::kEdge; ++n) {
       const int offset = n - CellsAround::kReach;
       key[n] = hn::Add(first, hn::Set(du, uint32_t(offset) * prime));
       const V low = hn::Set(d, float(offset)), one = hn::Set(d, 1.0f);
-      const V away = hn::Max(hn::Max(hn::Sub(low, place), hn::Sub(hn::Sub(place, low), one)), hn::Zero(d));
+      const V away = hn::Max(hn::Max(hn::Sub(low, inside), hn::Sub(hn::Sub(inside, low), one)), hn::Zero(d));
       gap[n] = hn::Mul(away, away);
     }
   }
 };
 
 // shared::featurePoint along one axis, less the point's place: `bits` as the hash gives them.
-HWY_INLINE V apart(VU bits, int offset, V jitter, V place) {
+HWY_INLINE V apart(VU bits, int offset, V jitter, const Along& axis) {
   const Tag d;
   const hn::RebindToSigned<Tag> di;
   const V unit = hn::Mul(hn::ConvertTo(d, hn::BitCast(di, bits)), hn::Set(d, 1.0f / 2048.0f));
   const V half = hn::Set(d, 0.5f);
   const V feature = hn::Add(half, hn::Mul(jitter, hn::Sub(unit, half)));
-  return hn::Sub(hn::Add(hn::Set(d, float(offset)), feature), place);
+  return hn::Sub(hn::Add(hn::Add(axis.corner, hn::Set(d, float(offset))), feature), axis.place);
 }
 
 template <bool kSecond>
-HWY_INLINE void nearest(const WorleyNoise& noise, const StrewnPlaces& places, size_t n, V& first, V& second) {
+HWY_INLINE void nearest(const WorleyNoise& noise, const StrewnPlaces& places, Frame frame, size_t n, V& first,
+                        V& second) {
   const Tag d;
   const UTag du;
   Along x, y, z;
-  x.set(places.x + n, places.cellX, kHashX);
-  y.set(places.y + n, places.cellY, kHashY);
-  z.set(places.z + n, places.cellZ, kHashZ);
+  x.set(places.x + n, places.cellX, frame, kHashX);
+  y.set(places.y + n, places.cellY, frame, kHashY);
+  z.set(places.z + n, places.cellZ, frame, kHashZ);
   const VU seed = hn::Set(du, noise.seed), eleven = hn::Set(du, 0x7ffu);
   const V jitter = hn::Set(d, noise.jitter);
   // A part in 10^5 beyond what can matter, so that no rounding leaves out a cell that does.
@@ -124,36 +129,39 @@ HWY_INLINE void nearest(const WorleyNoise& noise, const StrewnPlaces& places, si
               iz = at.z + CellsAround::kReach;
     if (hn::AllTrue(d, hn::Gt(hn::Add(hn::Add(x.gap[ix], y.gap[iy]), z.gap[iz]), worst))) continue;
     const VU h = hashed(hn::Xor(hn::Xor(x.key[ix], y.key[iy]), hn::Xor(z.key[iz], seed)));
-    const V ax = apart(hn::And(h, eleven), at.x, jitter, x.place);
-    const V ay = apart(hn::And(hn::ShiftRight<11>(h), eleven), at.y, jitter, y.place);
-    const V az = apart(hn::ShiftLeft<1>(hn::ShiftRight<22>(h)), at.z, jitter, z.place);
+    const V ax = apart(hn::And(h, eleven), at.x, jitter, x);
+    const V ay = apart(hn::And(hn::ShiftRight<11>(h), eleven), at.y, jitter, y);
+    const V az = apart(hn::ShiftLeft<1>(hn::ShiftRight<22>(h)), at.z, jitter, z);
     const V squared = hn::Add(hn::Add(hn::Mul(ax, ax), hn::Mul(ay, ay)), hn::Mul(az, az));
     if (kSecond) second = hn::Min(second, hn::Max(first, squared));
     first = hn::Min(first, squared);
   }
 }
 
-size_t strewn(const WorleyNoise& noise, const StrewnPlaces& places, size_t count, float* values) {
+bool strewn(const WorleyNoise& noise, const StrewnPlaces& places, Frame frame, size_t count, float* values) {
   const Tag d;
   const size_t lanes = hn::Lanes(d);
-  size_t n = 0;
-  for (; n + lanes <= count; n += lanes) {
+  for (size_t n = 0; n < count; n += lanes) {
     V first, second;
+    V result;
     if (noise.output == WorleyOutput::f1) {
-      nearest<false>(noise, places, n, first, second);
-      hn::StoreU(hn::Sqrt(first), d, values + n);
+      nearest<false>(noise, places, frame, n, first, second);
+      result = hn::Sqrt(first);
     } else {
-      nearest<true>(noise, places, n, first, second);
-      const V far = hn::Sqrt(second);
-      hn::StoreU(noise.output == WorleyOutput::f2 ? far : hn::Sub(far, hn::Sqrt(first)), d, values + n);
+      nearest<true>(noise, places, frame, n, first, second);
+      result = hn::Sqrt(second);
+      if (noise.output == WorleyOutput::f2MinusF1) result = hn::Sub(result, hn::Sqrt(first));
     }
+    HWY_ALIGN float lane[16];
+    hn::Store(result, d, lane);
+    std::copy_n(lane, std::min(lanes, count - n), values + n);
   }
-  return n;
+  return true;
 }
 
-#else  // a machine without SSSE3: all by the definition
+#else
 
-size_t strewn(const WorleyNoise&, const StrewnPlaces&, size_t, float*) { return 0; }
+bool strewn(const WorleyNoise&, const StrewnPlaces&, Frame, size_t, float*) { return false; }
 
 #endif
 
@@ -165,8 +173,9 @@ HWY_AFTER_NAMESPACE();
 namespace nephele {
 HWY_EXPORT(strewn);
 
-size_t worleyStrewn(const WorleyNoise& noise, const StrewnPlaces& places, size_t count, float* values) {
-  return HWY_DYNAMIC_DISPATCH(strewn)(noise, places, count, values);
+bool worleyStrewn(const WorleyNoise& noise, const StrewnPlaces& places, Frame frame, size_t count,
+                  float* values) {
+  return HWY_DYNAMIC_DISPATCH(strewn)(noise, places, frame, count, values);
 }
 
 }  // namespace nephele

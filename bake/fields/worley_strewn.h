@@ -12,10 +12,15 @@ struct StrewnPlaces {
   const float *x, *y, *z;
 };
 
-/// values[n] = distances in cells for n from 0 on, in whole vectors; returns how many that were, at most
-/// `count`. Takes the operations of shared::worleyDistances, for noise without a period that does not evolve;
-/// values are those of the definition but where rounding decides whether a cell is near enough to matter.
-/// Equal bits on every target.
-size_t worleyStrewn(const WorleyNoise& noise, const StrewnPlaces& places, size_t count, float* values);
+/// Where the origin of a distance's floats lies: in the cell of each point, as the definition has it, or in
+/// the first cell, as features gathered for many points have it. It decides the last bits alone.
+enum class Frame { ownCell, firstCell };
+
+/// values[n] = distances in cells at `count` places, whose arrays go on for 15 more floats. For noise without
+/// a period that does not evolve. Values are those over all feature points, in the operations of
+/// shared::worleyDistances: equal bits on every target, and equal to those from worley_kernels' gathered
+/// features in their frame. False, and nothing done, on a machine without vectors.
+bool worleyStrewn(const WorleyNoise& noise, const StrewnPlaces& places, Frame frame, size_t count,
+                  float* values);
 
 }  // namespace nephele
