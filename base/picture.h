@@ -43,4 +43,7 @@ std::array<unsigned char, 3> toneMap(const std::array<float, 3>& linear, float e
 /// whole or not at all. Throws WorldError.
 void writePng(const std::string& path, const Picture& picture, float exposureEv, const Backdrop& backdrop);
 
+/// Writes 8-bit pixels as they are, R, G, B by rows from the top, whole or not at all. Throws WorldError.
+void writePngBytes(const std::string& path, int width, int height, const std::vector<unsigned char>& rgb);
+
 }  // namespace nephele

@@ -76,9 +76,13 @@ void writePng(const std::string& path, const Picture& picture, float exposureEv,
       pixels.insert(pixels.end(), shown.begin(), shown.end());
     }
   }
+  writePngBytes(path, picture.width, picture.height, pixels);
+}
+
+void writePngBytes(const std::string& path, int width, int height, const std::vector<unsigned char>& rgb) {
+  NEPHELE_CHECK_EQ(rgb.size(), static_cast<size_t>(width) * static_cast<size_t>(height) * kRgb);
   std::string bytes;
-  if (stbi_write_png_to_func(appendBytes, &bytes, picture.width, picture.height, kRgb, pixels.data(),
-                             picture.width * kRgb) == 0)
+  if (stbi_write_png_to_func(appendBytes, &bytes, width, height, kRgb, rgb.data(), width * kRgb) == 0)
     throw WorldError("cannot encode '" + path + "' as PNG");
   writeWhole(path, [&](const std::string& temporary) { writeBytes(path, temporary, bytes); });
 }

@@ -86,7 +86,7 @@ int renderOrShow(Arguments& a, bool renderGiven, bool stepGiven, bool exposureGi
   AppOptions window;
   window.render = a.render;
   parseSize("--window-size", a.windowSize, window.width, window.height);
-  window.screenshotFolder = std::filesystem::current_path().string();
+  window.folder = std::filesystem::current_path().string();
   return runApp(window);
 }
 

@@ -80,15 +80,6 @@ Medium exposedMedium(const BrickVolume& bricks) {
   return medium;
 }
 
-void turnLights(Scene& scene, const dvec3& up) {
-  if (!scene.lightsFollowUp) return;
-  for (Light& light : scene.lights) {
-    if (Sun* sun = std::get_if<Sun>(&light)) sun->toLight = turnedTo(up, sun->toLight);
-    if (PointLight* point = std::get_if<PointLight>(&light)) point->position = turnedTo(up, point->position);
-  }
-  scene.lightsFollowUp = false;
-}
-
 }  // namespace
 
 dvec3 upOf(const BrickVolume& bricks) {
@@ -145,6 +136,15 @@ ChosenMedium chooseMedium(const Scene& scene, const BrickVolume& bricks) {
 
 dvec3 turnedTo(const dvec3& up, const dvec3& direction) {
   return std::abs(up.y) > std::abs(up.z) ? dvec3(direction.x, direction.z, -direction.y) : direction;
+}
+
+void turnLights(Scene& scene, const dvec3& up) {
+  if (!scene.lightsFollowUp) return;
+  for (Light& light : scene.lights) {
+    if (Sun* sun = std::get_if<Sun>(&light)) sun->toLight = turnedTo(up, sun->toLight);
+    if (PointLight* point = std::get_if<PointLight>(&light)) point->position = turnedTo(up, point->position);
+  }
+  scene.lightsFollowUp = false;
 }
 
 ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double aspect,

@@ -36,6 +36,9 @@ ChosenMedium chooseMedium(const Scene& scene, const BrickVolume& bricks);
 /// to +Y and +Y to −Z.
 glm::dvec3 turnedTo(const glm::dvec3& up, const glm::dvec3& direction);
 
+/// Turns lights that follow up to where `up` is; they stay so.
+void turnLights(Scene& scene, const glm::dvec3& up);
+
 /// Camera and medium of a scene, given or chosen; the file's up; the environment's picture, read. A camera
 /// without `up` takes the file's. Lights that follow up are turned, and stay so. Throws InputError for an
 /// environment that cannot be read.

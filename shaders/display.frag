@@ -1,5 +1,5 @@
-// Shows a film in the window: means over samples, the backdrop or the environment behind, the project's tone curve.
-// The curve is that of base/picture.h: y = 1 − e^(−x · 2^EV), then the sRGB transfer function.
+// Shows a film in the window: means over samples, the backdrop or the environment behind, the project's tone curve; or one
+// quantity as colours of a scale. The curve is that of base/picture.h: y = 1 − e^(−x · 2^EV), then the sRGB transfer function.
 #version 450 core
 #include "dialect.glsl"
 #include "shared/parameters.glsl"
@@ -7,11 +7,14 @@
 layout(std140, binding = 0) uniform MarchBlock { MarchParameters params; };  // for a picture of the window's size
 layout(binding = 0) uniform sampler2D radianceSum;
 layout(binding = 1) uniform sampler2D transmittanceSum;
+layout(binding = 2) uniform sampler2D depthSum;
 layout(location = 0) uniform vec3 backdropBottom;
 layout(location = 1) uniform vec3 backdropTop;
 layout(location = 3) uniform vec2 windowSize;
 layout(location = 4) uniform float exposure;  // 2^EV
-layout(location = 5) uniform int behind;  // what stands behind the medium: kBackdrop, kSky or kNothing
+layout(location = 5) uniform int behind;   // what stands behind the medium: kBackdrop, kSky or kNothing
+layout(location = 6) uniform int view;     // preview/app/views.h
+layout(location = 7) uniform float scale;  // upper end of the view's scale
 
 layout(location = 0) out vec4 outColour;
 
@@ -24,16 +27,27 @@ layout(location = 0) out vec4 outColour;
 const int kBackdrop = 0;
 const int kSky = 1;
 
+const int kRadiance = 0;
+const int kTransmittance = 1;
+const int kOpticalDepth = 2;
+const int kSlice = 3;
+const int kSteps = 4;
+const vec3 kGround = vec3(0.012);  // behind a scale's colours, linear
+
 vec3 srgbFromLinear(vec3 x) {
   return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, greaterThan(x, vec3(0.0031308)));
 }
 
-void main() {
-  // The film's first row is the picture's top, the window's first row its bottom.
-  vec2 uv = vec2(gl_FragCoord.x, windowSize.y - gl_FragCoord.y) / windowSize;
-  vec4 radiance = texture(radianceSum, uv);
-  vec4 transmittance = texture(transmittanceSum, uv);
-  float count = max(transmittance.a, 1.0);
+// Dark blue over red to pale yellow, lightness rising throughout; [0, 1] → sRGB. Six colours, mixed linearly.
+vec3 scaleColour(float x) {
+  const vec3 stops[6] = vec3[6](vec3(0.02, 0.02, 0.10), vec3(0.27, 0.07, 0.44), vec3(0.60, 0.16, 0.46),
+                                vec3(0.90, 0.32, 0.34), vec3(0.99, 0.64, 0.38), vec3(0.99, 0.98, 0.76));
+  float place = clamp(x, 0.0, 1.0) * 5.0;
+  int i = min(int(place), 4);
+  return mix(stops[i], stops[i + 1], place - float(i));
+}
+
+vec3 radianceColour(vec4 radiance, vec4 transmittance, float count, vec2 uv) {
   vec3 colour = radiance.rgb / count * exposure;
   if (behind == kSky) {
     vec2 at = uv * windowSize;
@@ -43,5 +57,29 @@ void main() {
     // The backdrop is no light, and exposure does not change it.
     colour += (1.0 - radiance.a / count) * mix(backdropTop, backdropBottom, uv.y);
   }
-  outColour = vec4(srgbFromLinear(1.0 - exp(-max(colour, 0.0))), 1.0);
+  return srgbFromLinear(1.0 - exp(-max(colour, 0.0)));
+}
+
+void main() {
+  // The film's first row is the picture's top, the window's first row its bottom.
+  vec2 uv = vec2(gl_FragCoord.x, windowSize.y - gl_FragCoord.y) / windowSize;
+  vec4 radiance = texture(radianceSum, uv);
+  vec4 transmittance = texture(transmittanceSum, uv);
+  float count = max(transmittance.a, 1.0);
+  vec3 colour = vec3(0.0);
+  if (view == kRadiance) {
+    colour = radianceColour(radiance, transmittance, count, uv);
+  } else if (view == kTransmittance) {
+    colour = srgbFromLinear(clamp(transmittance.rgb / count, 0.0, 1.0));
+  } else if (view == kOpticalDepth) {
+    vec3 t = clamp(transmittance.rgb / count, exp(-scale), 1.0);
+    colour = scaleColour(-log((t.r + t.g + t.b) / 3.0) / scale);
+  } else if (view == kSteps) {
+    colour = scaleColour(texture(depthSum, uv).z / count / scale);
+  } else {  // the slice and the skipped share hold value · weight, and the weight
+    float weight = radiance.a / count;
+    vec3 inside = scaleColour(radiance.r / max(radiance.a, 1e-6) / scale);
+    colour = mix(srgbFromLinear(kGround), inside, weight);
+  }
+  outColour = vec4(colour, 1.0);
 }

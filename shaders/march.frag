@@ -61,6 +61,9 @@ float brickDensity(uint slot, vec3 position) {
 #include "shared/light.glsl"
 #include "shared/march.glsl"
 
+#if NPH_VIEW
+#include "view.glsl"
+#else
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   uint random = randomState(uint(pixel.x), uint(pixel.y), sampleNumber, uint(params.brickCount.w));
@@ -71,3 +74,4 @@ void main() {
   outTransmittance = vec4(transmittance, 1.0);
   outDepth = vec4(result.depth, result.depthWeight, result.cost.x, result.cost.y);
 }
+#endif

@@ -1,183 +1,114 @@
-// The window's loop: hands move the camera, the viewer draws, the panel lies on top, and at rest everything
-// sleeps. Depends on all of preview and volume.
+// The window's loop: hands move the camera, files come and go, the viewer draws, the panel lies on top, and
+// at rest everything sleeps. Depends on all of preview and volume.
 #include "preview/app/app.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <cmath>
-#include <filesystem>
-#include <iomanip>
+#include <algorithm>
+#include <chrono>
 #include <iostream>
-#include <numbers>
-#include <sstream>
 
-#include "preview/app/orbit_camera.h"
+#include "preview/app/desk.h"
 #include "preview/app/panel.h"
 #include "preview/app/window.h"
-#include "preview/resolve.h"
 
 namespace nephele {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr double kWorkSeconds = 0.03;   // of drawing between two looks at the hands
-constexpr double kZoomPerNotch = 0.87;  // of the distance
+constexpr double kLookSeconds = 0.5;    // between two looks at the files; also the longest sleep
+constexpr double kRedrawSeconds = 0.1;  // between two looks of the user at a picture that gets better
 constexpr int kFramesAfterEvent = 3;    // the panel needs a few to settle its hover and sizes
+constexpr uint64_t kReadAheadBytes = uint64_t{2} << 30;
+
+double secondsBetween(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
 
 class App {
  public:
   explicit App(const AppOptions& options)
-      : options_(options),
-        scene_(openScene(options.render.scene, options.render.stepVoxels)),
-        bricks_(openVolume(options.render.file, options.render.grid)),
-        window_(options.width, options.height, "Nephele: " + options.render.file),
-        orbit_(resolve()) {
-    loadGl(reinterpret_cast<GLADloadfunc>(glfwGetProcAddress));
-    viewer_.emplace(bricks_, options.render.filter, options.render.seed);
+      : first_(openFirst(options.render)),
+        window_(options.width, options.height, "Nephele"),
+        reader_(readVolume, Window::wake, kReadAheadBytes),
+        desk_(options, first_, window_, reader_) {
     panel_.emplace(window_.handle());
   }
 
   int run() {
-    restart();
-    if (width_ > 0 && height_ > 0) {
-      viewer_->work(kWorkSeconds);  // a first coarse picture
-      state_.exposureEv = exposureFor(options_.render, viewer_->read());
-    }
-    bool more = true;
-    for (int framesLeft = kFramesAfterEvent; !window_.closing();) {
-      const Hands hands = window_.poll(!more && framesLeft == 0);
-      if (hands.any) framesLeft = kFramesAfterEvent;
-      framesLeft = std::max(0, framesLeft - 1);
-      takeHands(hands);
-      int width = 0, height = 0;
-      window_.framebufferSize(width, height);
-      if (width != width_ || height != height_) restart();
-      if (width < 1 || height < 1) {  // minimised: nothing to draw
-        more = false;
-        continue;
-      }
-      more = viewer_->work(kWorkSeconds);
-      if (takeScreenshot_) screenshot();
-      viewer_->show(state_.view.scene, state_.exposureEv, width, height);
-      if (panel_->draw(state_, viewer_->stats())) {
-        restart();
-        more = true;
-      }
-      window_.panelWantsMouse = panel_->wantsMouse();
-      window_.panelWantsKeys = panel_->wantsKeys();
-      window_.swap();
-    }
+    desk_.begin();
+    while (!window_.closing()) turn();
+    desk_.writeStats();
     return kExitDone;
   }
 
  private:
-  Camera resolve() {
-    std::string sentence;
-    state_.view = resolveScene(scene_, bricks_, aspect(), sentence);
-    state_.up = state_.view.camera.up;
-    state_.title = std::filesystem::path(bricks_.path).filename().string() + ", " + bricks_.gridName;
-    state_.notice = sentence;
-    std::cerr << sentence << '\n' << describeLight(state_.view) << '\n';
-    firstCamera_ = state_.view.camera;
-    return firstCamera_;
-  }
+  static BrickVolume readVolume(const VolumeKey& key) { return loadBricks(key.path, key.grid); }
 
-  double aspect() const {
+  void turn() {
+    const Hands hands = window_.poll(sleepSeconds());
+    const Clock::time_point now = Clock::now();
+    const double seconds = secondsBetween(std::exchange(lastTurn_, now), now);
+    if (hands.any) framesLeft_ = kFramesAfterEvent;
+    desk_.takeHands(hands);
+    if (secondsBetween(lastLook_, now) >= kLookSeconds) {
+      lastLook_ = now;
+      desk_.lookAtFiles();
+    }
+    const bool moved = desk_.advance(seconds);
     int width = 0, height = 0;
     window_.framebufferSize(width, height);
-    return width > 0 && height > 0 ? static_cast<double>(width) / height : 1.0;
-  }
-
-  void restart() {
-    window_.framebufferSize(width_, height_);
-    state_.view.camera = orbit_.camera();
-    if (width_ > 0 && height_ > 0) viewer_->restart(state_.view, width_, height_);
-  }
-
-  void takeHands(const Hands& hands) {
-    const bool moved = hands.orbitX != 0.0 || hands.orbitY != 0.0 || hands.panX != 0.0 || hands.panY != 0.0 ||
-                       hands.scroll != 0.0;
-    if (moved) {
-      // A drag over the window's whole height is half a turn.
-      orbit_.orbit(-std::numbers::pi * hands.orbitX, std::numbers::pi * hands.orbitY);
-      orbit_.pan(hands.panX, -hands.panY);
-      orbit_.zoom(std::pow(kZoomPerNotch, hands.scroll));
-      restart();
+    if (width < 1 || height < 1) {  // minimised: nothing to draw
+      more_ = false;
+      framesLeft_ = 0;
+      return;
     }
-    for (int key : hands.keys) takeKey(key);
+    const bool wasMore = more_;
+    more_ = desk_.work(kWorkSeconds);
+    const bool finished = wasMore && !more_;
+    const bool due = more_ && secondsBetween(lastDrawn_, now) >= kRedrawSeconds;
+    if (framesLeft_ > 0 || moved || finished || due) draw(width, height);
   }
 
-  void takeKey(int key) {
-    switch (key) {
-      case GLFW_KEY_ESCAPE:
-      case GLFW_KEY_Q:
-        window_.close();
-        break;
-      case GLFW_KEY_F:
-        orbit_ = OrbitCamera(frameCamera(bricks_, state_.up, state_.view.camera.fov, aspect()));
-        restart();
-        break;
-      case GLFW_KEY_R:
-        orbit_ = OrbitCamera(firstCamera_);
-        restart();
-        break;
-      case GLFW_KEY_L:
-        switchLook();
-        break;
-      case GLFW_KEY_H:
-        state_.visible = !state_.visible;
-        break;
-      case GLFW_KEY_F1:
-        state_.help = !state_.help;
-        break;
-      case GLFW_KEY_F12:
-        takeScreenshot_ = true;
-        break;
-      default:
-        break;
-    }
+  void draw(int width, int height) {
+    framesLeft_ = std::max(0, framesLeft_ - 1);
+    lastDrawn_ = Clock::now();
+    desk_.show(width, height);
+    const Settings before = desk_.state().settings;
+    const UiWishes wishes = panel_->draw(desk_.state(), desk_.facts());
+    desk_.takeWishes(wishes, before, panel_->held());
+    if (wishes.settings || wishes.picture) framesLeft_ = kFramesAfterEvent;
+    window_.panelWantsMouse = panel_->wantsMouse();
+    window_.panelWantsKeys = panel_->wantsKeys();
+    window_.swap();
   }
 
-  void switchLook() {
-    Look& look = state_.view.scene.look;
-    look = look == Look::report ? Look::physical : Look::report;
-    state_.notice = describeLight(state_.view);
-    restart();
+  double sleepSeconds() const {
+    if (more_ || framesLeft_ > 0 || window_.flying()) return 0.0;
+    const double toLook = kLookSeconds - secondsBetween(lastLook_, Clock::now());
+    return std::clamp(std::min(toLook, desk_.due().value_or(kLookSeconds)), 0.0, kLookSeconds);
   }
 
-  void screenshot() {
-    takeScreenshot_ = false;
-    std::filesystem::path path;
-    for (int number = 1; path.empty() || std::filesystem::exists(path); ++number) {
-      constexpr int kDigits = 4;
-      std::ostringstream name;
-      name << "nephele_" << std::setw(kDigits) << std::setfill('0') << number << ".png";
-      path = std::filesystem::path(options_.screenshotFolder) / name.str();
-    }
-    try {
-      writePicture(path.string(), viewer_->read(), state_.view, state_.exposureEv, false);
-      state_.notice = "wrote " + path.filename().string();
-    } catch (const WorldError& error) {  // a folder that cannot be written must not end the session
-      state_.notice = error.what();
-    }
-    std::cerr << state_.notice << '\n';
-  }
-
-  AppOptions options_;
-  Scene scene_;
-  BrickVolume bricks_;
+  FirstVolume first_;
   Window window_;
-  PanelState state_;
-  Camera firstCamera_;
-  OrbitCamera orbit_;
-  std::optional<Viewer> viewer_;
+  ReadAhead reader_;
+  Desk desk_;
   std::optional<Panel> panel_;  // last: goes first, while the context lives
-  int width_ = 0, height_ = 0;
-  bool takeScreenshot_ = false;
+  bool more_ = true;
+  int framesLeft_ = kFramesAfterEvent;
+  Clock::time_point lastTurn_ = Clock::now(), lastLook_ = Clock::now(), lastDrawn_{};
 };
 
 }  // namespace
 
-int runApp(const AppOptions& options) { return App(options).run(); }
+int runApp(const AppOptions& options) {
+  const int code = App(options).run();
+  // Whatever was made on the GPU is gone, or something was leaked.
+  NEPHELE_CHECK_EQ(glCounts().made, glCounts().destroyed);
+  return code;
+}
 
 }  // namespace nephele

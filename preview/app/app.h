@@ -7,12 +7,13 @@
 
 namespace nephele {
 
-/// `render` says what is shown and how; its size, samples and output do not count here.
+/// `render` says what is shown and how; its size, samples and output do not count here. Its stats are written
+/// when a file has been shown for the first time, and at the end.
 struct AppOptions {
   RenderOptions render;
   int width = 1280;
   int height = 720;
-  std::string screenshotFolder;  // where F12 puts nephele_0001.png and on
+  std::string folder;  // where pictures (nephele_0001.png and on) and scenes go
 };
 
 /// Shows the file until the window is closed. Returns the exit code 0. Throws InputError for the file or

@@ -40,6 +40,14 @@ dvec3 directionOf(const Angles& angles, const dvec3& up) {
          std::sin(angles.elevation) * unitUp;
 }
 
+dvec3 rayThrough(const Camera& camera, double x, double y, double aspect) {
+  const dvec3 forward = glm::normalize(camera.target - camera.position);
+  const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
+  const double half = std::tan(0.5 * camera.fov);
+  return glm::normalize(forward + half * (2.0 * x - 1.0) * aspect * right +
+                        half * (1.0 - 2.0 * y) * glm::cross(right, forward));
+}
+
 OrbitCamera::OrbitCamera(const Camera& camera)
     : target_(camera.target), up_(glm::normalize(camera.up)), fov_(camera.fov) {
   const Sides sides = sidesOf(up_);
@@ -66,6 +74,27 @@ void OrbitCamera::pan(double right, double up) {
 }
 
 void OrbitCamera::zoom(double factor) { distance_ *= factor; }
+
+void OrbitCamera::look(double azimuth, double elevation) {
+  const dvec3 position = camera().position;
+  orbit(azimuth, elevation);
+  target_ += position - camera().position;
+}
+
+void OrbitCamera::fly(double forward, double right, double up) {
+  const Camera now = camera();
+  const dvec3 ahead = glm::normalize(now.target - now.position);
+  target_ += forward * ahead + right * glm::normalize(glm::cross(ahead, up_)) + up * up_;
+}
+
+void OrbitCamera::focus(const dvec3& point) {
+  const Camera now = camera();
+  const dvec3 ahead = glm::normalize(now.target - now.position);
+  const double depth = glm::dot(point - now.position, ahead);
+  if (!(depth > 0.0)) return;
+  target_ = point;
+  distance_ = depth;
+}
 
 Camera OrbitCamera::camera() const {
   const dvec3 from = std::cos(elevation_) * (std::cos(azimuth_) * sideA_ + std::sin(azimuth_) * sideB_) +

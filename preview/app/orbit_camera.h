@@ -23,6 +23,14 @@ class OrbitCamera {
   void pan(double right, double up);
   /// Multiplies the distance to the target; `factor` > 0.
   void zoom(double factor);
+  /// Turns the view about the camera's own place: the target moves. Angles as orbit() takes them.
+  void look(double azimuth, double elevation);
+  /// Moves camera and target by world distances along the view, to the right, and along up.
+  void fly(double forward, double right, double up);
+  /// Makes a point the target: the camera moves across the view, and turns no way. A point behind the camera
+  /// or on it changes nothing.
+  void focus(const glm::dvec3& point);
+  double distance() const { return distance_; }
   Camera camera() const;
 
  private:
@@ -35,6 +43,9 @@ class OrbitCamera {
   double azimuth_;
   double elevation_;
 };
+
+/// The unit direction through a picture position: shares of the picture's sides from its top left corner.
+glm::dvec3 rayThrough(const Camera& camera, double x, double y, double aspect);
 
 /// Azimuth and elevation of a direction about `up`, and back; the axes of OrbitCamera. For the panel's sun.
 struct Angles {

@@ -1,25 +1,11 @@
-// The panel of lights, medium and march, and the list of keys, in Dear ImGui. Depends on imgui, scene and
-// app/viewer.h.
+// Everything that Dear ImGui lays over the picture. Depends on imgui and app/ui_state.h.
 #pragma once
 
-#include <string>
-
-#include "preview/app/viewer.h"
+#include "preview/app/ui_state.h"
 
 struct GLFWwindow;
 
 namespace nephele {
-
-/// What the panel and the keys change.
-struct PanelState {
-  ViewedScene view;
-  glm::dvec3 up{0.0, 0.0, 1.0};
-  double exposureEv = 0.0;
-  bool visible = true;
-  bool help = false;
-  std::string title;   // file and grid
-  std::string notice;  // the last thing done, as a sentence
-};
 
 /// Owns ImGui's context on one window. Leaves no files behind.
 class Panel {
@@ -30,11 +16,12 @@ class Panel {
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
-  /// Builds and draws into the current framebuffer. Returns whether something was changed that asks for a new
-  /// picture (exposure does not).
-  bool draw(PanelState& state, const ViewerStats& stats);
+  /// Builds and draws into the current framebuffer.
+  UiWishes draw(UiState& state, const UiFacts& facts);
   bool wantsMouse() const;
   bool wantsKeys() const;
+  /// Whether a widget is held: its changes are one step of undo.
+  bool held() const;
 };
 
 }  // namespace nephele

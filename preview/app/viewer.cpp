@@ -1,10 +1,8 @@
-// Coarse and accumulated pictures for the window. Depends on gpu, scene and volume/bricks.h.
+// Lanes, volume and display pass of the window. Depends on gpu, scene and volume/bricks.h.
 #include "preview/app/viewer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "preview/behind.h"
 #include "preview/gpu/camera_rays.h"
@@ -12,137 +10,156 @@
 namespace nephele {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-// A coarse frame should take about this long; its size changes only outside the band, so that it does not
-// flutter.
-constexpr double kQuickSecondsLow = 0.012, kQuickSecondsHigh = 0.035;
-constexpr int kMostDivisor = 8;
-constexpr double kQuickStepFactor = 3.0;
-
 // As shaders/display.frag declares them.
-enum DisplayLocation : GLint { kBottom = 0, kTop = 1, kWindowSize = 3, kExposure = 4, kBehind = 5 };
+enum DisplayLocation : GLint {
+  kBottom = 0,
+  kTop = 1,
+  kWindowSize = 3,
+  kExposure = 4,
+  kBehind = 5,
+  kView = 6,
+  kScale = 7
+};
 constexpr GLuint kParameterBinding = 0;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 void setRgb(GLint location, const Rgb& rgb) {
   glUniform3f(location, static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]));
 }
 
-void fitFilm(std::optional<Film>& film, int width, int height) {
-  if (film && film->width() == width && film->height() == height) {
-    film->clear();
-  } else {
-    film.reset();
-    film.emplace(width, height);
-  }
-}
-
 }  // namespace
 
-Viewer::Viewer(const BrickVolume& bricks, Filter filter, unsigned seed)
-    : bricks_(bricks),
+Viewer::Viewer(Filter filter, unsigned seed)
+    : filter_(filter),
       seed_(seed),
-      pass_(filter),
-      atlas_(bricks, filter),
       display_(buildProgram("screen.vert", "display.frag")),
-      displayParameters_(makeBuffer()),
       noVertices_(makeVertexArray()) {
-  glNamedBufferStorage(displayParameters_.name(), sizeof(shared::MarchParameters), nullptr,
-                       GL_DYNAMIC_STORAGE_BIT);
+  for (GlBuffer& parameters : displayParameters_) {
+    parameters = makeBuffer();
+    glNamedBufferStorage(parameters.name(), sizeof(shared::MarchParameters), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  }
   checkGl("making the display's parameters");
+  passFor(View::radiance);
 }
 
-void Viewer::restart(const ViewedScene& view, int width, int height) {
-  view_ = view;
-  width_ = width;
-  height_ = height;
-  quickNeeded_ = true;
-  accumulator_.reset();
-  pass_.setEnvironment(view.environmentMap);
-  const shared::MarchParameters parameters = marchParameters(view, bricks_, width, height, seed_, true);
-  glNamedBufferSubData(displayParameters_.name(), 0, sizeof parameters, &parameters);
+void Viewer::setVolume(std::shared_ptr<const BrickVolume> bricks) {
+  atlas_.reset();  // two volumes at once may be more than the GPU holds
+  try {
+    atlas_.emplace(*bricks, filter_);
+  } catch (const std::exception&) {
+    if (bricks_) atlas_.emplace(*bricks_, filter_);
+    throw;
+  }
+  bricks_ = std::move(bricks);
 }
 
-void Viewer::drawQuick() {
-  const int width = std::max(1, width_ / divisor_), height = std::max(1, height_ / divisor_);
-  fitFilm(quick_, width, height);
-  ViewedScene coarse = view_;
-  coarse.scene.march.stepVoxels *= kQuickStepFactor;
-  coarse.scene.march.shadowStepVoxels *= kQuickStepFactor;
-  const auto start = Clock::now();
-  pass_.setParameters(marchParameters(coarse, bricks_, width, height, seed_, true));
-  Accumulator once(width, height, 1, seed_);
-  once.advance(pass_, atlas_, *quick_, std::numeric_limits<double>::infinity());
-  const double seconds = secondsSince(start);
-  stats_.quickMilliseconds = seconds * 1e3;
-  if (seconds > kQuickSecondsHigh) divisor_ = std::min(divisor_ + 1, kMostDivisor);
-  if (seconds < kQuickSecondsLow) divisor_ = std::max(divisor_ - 1, 1);
+MarchPass& Viewer::passFor(View view) {
+  const MarchWrites writes = rowOf(view).writes;
+  auto& pass = passes_[static_cast<size_t>(writes)];
+  if (!pass) pass.emplace(filter_, std::vector<TextChange>{}, writes);
+  return *pass;
+}
+
+LaneTools Viewer::toolsFor(const Lane& lane) {
+  MarchPass& pass = passFor(lane.request().show);
+  if (lane.request().show == View::slice)
+    pass.setSlice(lane.request().slice.axis, slicePlace(lane.request().slice, *bricks_));
+  pass.setEnvironment(lane.request().view.environmentMap);
+  return {*bricks_, *atlas_, pass, seed_};
+}
+
+void Viewer::restart(Side side, const LaneRequest& request) {
+  auto& lane = lanes_[static_cast<size_t>(side)];
+  if (!lane) lane.emplace();
+  lane->restart(request);
 }
 
 bool Viewer::work(double seconds) {
-  if (width_ < 1 || height_ < 1) return false;
-  if (quickNeeded_) {
-    drawQuick();
-    quickNeeded_ = false;
-    fitFilm(full_, width_, height_);
-    pass_.setParameters(marchParameters(view_, bricks_, width_, height_, seed_, true));
-    accumulator_.emplace(width_, height_, kRestSamples, seed_);
-    fullSeconds_ = 0.0;
-    stats_.densitySamplesPerPixel = 0.0;
-    return true;
+  bool drawn = false;
+  for (size_t i = 0; i < lanes_.size(); ++i) {
+    auto& lane = lanes_[i];
+    if (!lane || !lane->quickNeeded()) continue;
+    const LaneRequest& r = lane->request();
+    const shared::MarchParameters parameters =
+        marchParameters(r.view, *bricks_, r.width, r.height, seed_, true);
+    glNamedBufferSubData(displayParameters_[i].name(), 0, sizeof parameters, &parameters);
+    lane->drawQuick(toolsFor(*lane));
+    drawn = true;
   }
-  if (!accumulator_ || accumulator_->done()) return false;
-  const auto start = Clock::now();
-  const bool more = accumulator_->advance(pass_, atlas_, *full_, seconds);
-  fullSeconds_ += secondsSince(start);
-  const unsigned whole = accumulator_->wholeSamples();
-  if (whole > 0 && stats_.densitySamplesPerPixel == 0.0) {
-    const double drawn = static_cast<double>(accumulator_->pixelsDone());
-    const FilmPicture soFar = full_->read();
-    stats_.densitySamplesPerPixel = soFar.densitySamples / drawn;
-    stats_.raysCutShort = soFar.raysCutShort;
-    stats_.sampleMilliseconds = fullSeconds_ * 1e3 * width_ * height_ / drawn;
+  if (drawn) return true;
+  // The side that has fewer samples goes on, so that both get better together.
+  Lane* next = nullptr;
+  for (auto& lane : lanes_) {
+    if (lane && lane->unfinished() && (next == nullptr || lane->stats().samples < next->stats().samples))
+      next = &*lane;
   }
-  return more;
+  if (next == nullptr) return false;
+  next->work(toolsFor(*next), seconds, goal_);
+  return std::any_of(lanes_.begin(), lanes_.end(),
+                     [](const auto& lane) { return lane && lane->unfinished(); });
 }
 
-const Film& Viewer::best() const {
-  return accumulator_ && accumulator_->wholeSamples() > 0 ? *full_ : *quick_;
-}
-
-void Viewer::show(const Scene& scene, double exposureEv, int width, int height) const {
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(0, 0, width, height);
-  if (!quick_) return;
-  best().bindForDisplay();
+void Viewer::showSide(size_t side, const Shown& shown, const Screen& screen) {
+  const Lane& lane = *lanes_[side];
+  const Film* film = lane.best();
+  if (film == nullptr) return;
+  MarchPass& pass = passFor(View::radiance);  // it holds the sky
+  pass.setEnvironment(lane.request().view.environmentMap);
+  pass.bindEnvironment();
+  glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, displayParameters_[side].name());
+  film->bindForDisplay();
   glUseProgram(display_.name());
   glBindVertexArray(noVertices_.name());
-  const BackdropColours colours = scene.backdrop.value_or(BackdropColours{});
+  const BackdropColours colours = shown.scene.backdrop.value_or(BackdropColours{});
   setRgb(kBottom, colours.bottom);
   setRgb(kTop, colours.top);
-  pass_.bindEnvironment();
-  glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, displayParameters_.name());
-  glUniform2f(kWindowSize, static_cast<float>(width), static_cast<float>(height));
-  glUniform1f(kExposure, static_cast<float>(std::exp2(exposureEv)));
-  glUniform1i(kBehind, static_cast<int>(behindOf(scene)));
+  glUniform2f(kWindowSize, static_cast<float>(screen.width), static_cast<float>(screen.height));
+  glUniform1f(kExposure, static_cast<float>(std::exp2(shown.exposureEv)));
+  glUniform1i(kBehind, static_cast<int>(behindOf(shown.scene)));
+  glUniform1i(kView, static_cast<int>(lane.request().show));
+  glUniform1f(kScale, static_cast<float>(lane.stats().scale));
   constexpr GLsizei kTriangleCorners = 3;
   glDrawArrays(GL_TRIANGLES, 0, kTriangleCorners);
+}
+
+void Viewer::show(const Screen& screen, const std::array<Shown, kSideCount>& shown) {
+  glBindFramebuffer(GL_FRAMEBUFFER, screen.framebuffer);
+  glViewport(0, 0, screen.width, screen.height);
+  const int column = static_cast<int>(std::lround(screen.divider * screen.width));
+  glEnable(GL_SCISSOR_TEST);
+  for (size_t i = 0; i < lanes_.size(); ++i) {
+    const bool left = i == static_cast<size_t>(Side::kept);
+    if (!lanes_[i]) continue;
+    if (left)
+      glScissor(0, 0, column, screen.height);
+    else
+      glScissor(column, 0, screen.width - column, screen.height);
+    showSide(i, shown[i], screen);
+  }
+  glDisable(GL_SCISSOR_TEST);
   checkGl("showing the picture");
 }
 
-Picture Viewer::read() const { return best().read().picture; }
+Picture Viewer::read() const {
+  const Film* film = lanes_[0] ? lanes_[0]->best() : nullptr;
+  return film != nullptr ? film->read().picture : Film(1, 1).read().picture;
+}
 
-ViewerStats Viewer::stats() const {
-  ViewerStats stats = stats_;
-  stats.samplesWanted = kRestSamples;
-  stats.samples = accumulator_ ? accumulator_->wholeSamples() : 0;
-  stats.gpuBytes = atlas_.gpuBytes() + pass_.gpuBytes() + (quick_ ? quick_->gpuBytes() : 0) +
-                   (full_ ? full_->gpuBytes() : 0);
-  return stats;
+double Viewer::depthAt(double x, double y) const {
+  const Film* film = lanes_[0] ? lanes_[0]->best() : nullptr;
+  if (film == nullptr || !(x >= 0.0 && x < 1.0 && y >= 0.0 && y < 1.0)) return 0.0;
+  return film->depthAt(static_cast<int>(x * film->width()), static_cast<int>(y * film->height()));
+}
+
+LaneStats Viewer::stats(Side side) const {
+  const auto& lane = lanes_[static_cast<size_t>(side)];
+  return lane ? lane->stats() : LaneStats{};
+}
+
+uint64_t Viewer::gpuBytes() const {
+  uint64_t bytes = atlas_ ? atlas_->gpuBytes() : 0;
+  for (const auto& pass : passes_) bytes += pass ? pass->gpuBytes() : 0;
+  for (const auto& lane : lanes_) bytes += lane ? lane->gpuBytes() : 0;
+  return bytes;
 }
 
 }  // namespace nephele

@@ -1,64 +1,77 @@
-// What the window shows: the march on the window's context, coarse while things change, accumulated while
-// they rest. Depends on gpu, scene and volume/bricks.h; knows no window.
+// What the window shows: one volume on the window's context, seen once or, split, under two settings.
+// Depends on gpu, scene, volume/bricks.h and app/lane.h; knows no window.
 #pragma once
 
-#include <optional>
+#include <array>
+#include <memory>
 
-#include "preview/gpu/accumulator.h"
-#include "preview/viewed_scene.h"
+#include "preview/app/lane.h"
 
 namespace nephele {
 
-/// Head-up figures.
-struct ViewerStats {
-  double quickMilliseconds = 0.0;   // the last coarse frame
-  double sampleMilliseconds = 0.0;  // one whole sample of every pixel at rest
-  double raysCutShort = 0.0;  // by the driver, of the samples above: the picture is wrong where it is not 0
-  double densitySamplesPerPixel = 0.0;  // densities read for one sample of every pixel; 0 until one is whole
-  unsigned samples = 0;                 // accumulated at rest
-  unsigned samplesWanted = 0;
-  uint64_t gpuBytes = 0;
+/// The two sides of a split; without one, only `edited` is drawn.
+enum class Side { edited, kept };
+inline constexpr int kSideCount = 2;
+
+/// How a picture is put into the window, apart from what it shows.
+struct Shown {
+  Scene scene;  // for backdrop and environment
+  double exposureEv = 0.0;
 };
 
-/// Call restart() whenever view, scene or size change; it costs nothing. Then work() until it returns false.
+/// Where the sides lie: `kept` left of `divider` (a share of the width), `edited` right of it. 0: no split.
+struct Screen {
+  unsigned framebuffer = 0;  // GL name; 0: the window's own
+  int width = 0, height = 0;
+  double divider = 0.0;
+};
+
+/// Set a volume first. Call restart() whenever view, scene or size change; it costs nothing. Then work()
+/// until it returns false.
 class Viewer {
  public:
-  static constexpr unsigned kRestSamples = 128;
+  /// The context is current.
+  Viewer(Filter filter, unsigned seed);
 
-  /// The context is current. Keeps a reference to the bricks.
-  Viewer(const BrickVolume& bricks, Filter filter, unsigned seed);
+  /// Uploads the bricks and keeps them. Where they do not fit, the volume before stays and the reason is
+  /// thrown: InputError or WorldError. Pictures must be restarted.
+  void setVolume(std::shared_ptr<const BrickVolume> bricks);
+  const BrickVolume& volume() const { return *bricks_; }
 
-  void restart(const ViewedScene& view, int width, int height);
-  /// Draws for about `seconds`: first a coarse picture (fewer pixels, longer steps), then samples of the full
-  /// one. Returns whether there is more to draw.
+  void restart(Side side, const LaneRequest& request);
+  /// Forgets the kept side.
+  void endSplit() { lanes_[1].reset(); }
+  void setGoal(const RestGoal& goal) { goal_ = goal; }
+  /// Draws for about `seconds`: first coarse pictures, then samples of the full ones. Returns whether there
+  /// is more to draw. Throws InputError for settings that cannot be drawn.
   bool work(double seconds);
-  /// Puts the best picture so far into the window's framebuffer, through backdrop or environment and the tone
-  /// curve.
-  void show(const Scene& scene, double exposureEv, int width, int height) const;
-  /// The best picture so far, as linear planes.
+  /// Puts the best pictures so far onto the screen, through backdrop or environment and the tone curve, or as
+  /// colours of a scale.
+  void show(const Screen& screen, const std::array<Shown, kSideCount>& shown);
+  /// The edited side's best picture so far, as linear planes; of one pixel without medium before any.
   Picture read() const;
-  ViewerStats stats() const;
+  /// World distance from the camera to what is seen at a share of the edited picture's sides from its top
+  /// left corner; 0 where there is no medium.
+  double depthAt(double x, double y) const;
+  LaneStats stats(Side side) const;
+  /// Bricks, index, pictures and parameters.
+  uint64_t gpuBytes() const;
 
  private:
-  void drawQuick();
-  const Film& best() const;
+  MarchPass& passFor(View view);
+  LaneTools toolsFor(const Lane& lane);
+  void showSide(size_t side, const Shown& shown, const Screen& screen);
 
-  const BrickVolume& bricks_;
+  Filter filter_;
   unsigned seed_;
-  MarchPass pass_;
-  BrickAtlas atlas_;
+  RestGoal goal_;
+  std::shared_ptr<const BrickVolume> bricks_;
+  std::optional<BrickAtlas> atlas_;
+  std::array<std::optional<MarchPass>, 3> passes_;  // by MarchWrites; compiled when first needed
   GlProgram display_;
-  GlBuffer displayParameters_;
+  std::array<GlBuffer, kSideCount> displayParameters_;  // for rays to the sky
   GlVertexArray noVertices_;
-  ViewedScene view_;
-  int width_ = 0, height_ = 0;
-  int divisor_ = 3;  // of the coarse picture's sides; follows from the time that it takes
-  bool quickNeeded_ = false;
-  std::optional<Film> quick_;
-  std::optional<Film> full_;
-  std::optional<Accumulator> accumulator_;
-  double fullSeconds_ = 0.0;
-  ViewerStats stats_;
+  std::array<std::optional<Lane>, kSideCount> lanes_;
 };
 
 }  // namespace nephele

@@ -6,16 +6,23 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <cmath>
 #include <utility>
 
 namespace nephele {
 namespace {
+
+constexpr double kDoubleClickSeconds = 0.35;
+constexpr double kDoubleClickPixels = 4.0;
+constexpr double kDividerPixels = 7.0;  // from its line to where it can still be taken hold of
 
 std::string lastGlfwError() {
   const char* text = nullptr;
   glfwGetError(&text);
   return text == nullptr ? "no reason given" : text;
 }
+
+Window& windowOf(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
 
 }  // namespace
 
@@ -34,28 +41,31 @@ Window::Window(int width, int height, const std::string& title) {
   }
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
+  loadGl(reinterpret_cast<GLADloadfunc>(glfwGetProcAddress));
+  listen();
+}
+
+void Window::listen() {
   glfwSetWindowUserPointer(window_, this);
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int modifiers) {
-    static_cast<Window*>(glfwGetWindowUserPointer(w))->onButton(button, action, modifiers);
+    windowOf(w).onButton(button, action, modifiers);
   });
-  glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
-    static_cast<Window*>(glfwGetWindowUserPointer(w))->onMove(x, y);
-  });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) { windowOf(w).onMove(x, y); });
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) {
-    Window* window = static_cast<Window*>(glfwGetWindowUserPointer(w));
-    window->hands_.any = true;
-    if (!window->panelWantsMouse) window->hands_.scroll += y;
+    Window& window = windowOf(w);
+    window.hands_.any = true;
+    if (!window.panelWantsMouse) window.hands_.scroll += y;
   });
-  glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
-    Window* window = static_cast<Window*>(glfwGetWindowUserPointer(w));
-    window->hands_.any = true;
-    if (action == GLFW_PRESS && !window->panelWantsKeys) window->hands_.keys.push_back(key);
+  glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int modifiers) {
+    windowOf(w).onKey(key, action, modifiers);
   });
-  glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) {
-    static_cast<Window*>(glfwGetWindowUserPointer(w))->hands_.any = true;
+  glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
+    Window& window = windowOf(w);
+    window.hands_.any = true;
+    for (int i = 0; i < count; ++i) window.hands_.drops.emplace_back(paths[i]);
   });
-  glfwSetWindowRefreshCallback(
-      window_, [](GLFWwindow* w) { static_cast<Window*>(glfwGetWindowUserPointer(w))->hands_.any = true; });
+  glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { windowOf(w).hands_.any = true; });
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { windowOf(w).hands_.any = true; });
 }
 
 Window::~Window() {
@@ -63,17 +73,41 @@ Window::~Window() {
   glfwTerminate();
 }
 
+bool Window::onDivider(double x) const {
+  int width = 0, height = 0;
+  glfwGetWindowSize(window_, &width, &height);
+  return divider && std::abs(x - *divider * width) <= kDividerPixels;
+}
+
+bool Window::isDoubleClick(double x, double y) {
+  const double now = glfwGetTime();
+  const bool twice =
+      now - clickTime_ < kDoubleClickSeconds && std::hypot(x - clickX_, y - clickY_) < kDoubleClickPixels;
+  clickTime_ = twice ? -1.0 : now;  // a third click is a first one again
+  clickX_ = x;
+  clickY_ = y;
+  return twice;
+}
+
 void Window::onButton(int button, int action, int modifiers) {
   hands_.any = true;
   if (action == GLFW_RELEASE) {
-    drag_ = Drag::none;
+    hands_.released = drag_ != Dragging::none;
+    drag_ = Dragging::none;
     return;
   }
   if (panelWantsMouse) return;
-  const bool shift = (modifiers & GLFW_MOD_SHIFT) != 0;
-  if (button == GLFW_MOUSE_BUTTON_LEFT) drag_ = shift ? Drag::pan : Drag::orbit;
-  if (button == GLFW_MOUSE_BUTTON_MIDDLE) drag_ = Drag::pan;
+  const bool shift = (modifiers & GLFW_MOD_SHIFT) != 0, control = (modifiers & GLFW_MOD_CONTROL) != 0;
   glfwGetCursorPos(window_, &lastX_, &lastY_);
+  if (button == GLFW_MOUSE_BUTTON_LEFT) {
+    drag_ = onDivider(lastX_) ? Dragging::divider
+            : control         ? Dragging::sun
+            : shift           ? Dragging::pan
+                              : Dragging::orbit;
+    if (drag_ == Dragging::orbit && isDoubleClick(lastX_, lastY_)) hands_.doubleClick = cursor();
+  }
+  if (button == GLFW_MOUSE_BUTTON_MIDDLE) drag_ = Dragging::pan;
+  if (button == GLFW_MOUSE_BUTTON_RIGHT) drag_ = Dragging::look;
 }
 
 void Window::onMove(double x, double y) {
@@ -82,27 +116,53 @@ void Window::onMove(double x, double y) {
   glfwGetWindowSize(window_, &width, &height);
   const double dx = (x - std::exchange(lastX_, x)) / (height > 0 ? height : 1);
   const double dy = (y - std::exchange(lastY_, y)) / (height > 0 ? height : 1);
-  if (drag_ == Drag::orbit) {
-    hands_.orbitX += dx;
-    hands_.orbitY += dy;
-  } else if (drag_ == Drag::pan) {
-    hands_.panX += dx;
-    hands_.panY += dy;
-  }
+  const auto add = [&](Drag& drag) {
+    drag.x += dx;
+    drag.y += dy;
+  };
+  if (drag_ == Dragging::orbit) add(hands_.orbit);
+  if (drag_ == Dragging::pan) add(hands_.pan);
+  if (drag_ == Dragging::look) add(hands_.look);
+  if (drag_ == Dragging::sun) add(hands_.sun);
+  if (drag_ == Dragging::divider && width > 0) hands_.divider = x / width;
 }
 
-Hands Window::poll(bool wait) {
-  if (wait) {
-    glfwWaitEvents();
+void Window::onKey(int key, int action, int modifiers) {
+  hands_.any = true;
+  if (action != GLFW_PRESS || panelWantsKeys || flying()) return;
+  hands_.keys.push_back({key, (modifiers & GLFW_MOD_CONTROL) != 0, (modifiers & GLFW_MOD_SHIFT) != 0});
+}
+
+std::optional<Place> Window::cursor() const {
+  int width = 0, height = 0;
+  glfwGetWindowSize(window_, &width, &height);
+  double x = 0.0, y = 0.0;
+  glfwGetCursorPos(window_, &x, &y);
+  if (!(x >= 0.0 && y >= 0.0 && x < width && y < height)) return std::nullopt;
+  return Place{x / width, y / height};
+}
+
+Flight Window::flight() const {
+  if (!flying()) return {};
+  const auto held = [&](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0 : 0.0; };
+  return {held(GLFW_KEY_W) - held(GLFW_KEY_S), held(GLFW_KEY_D) - held(GLFW_KEY_A),
+          held(GLFW_KEY_E) - held(GLFW_KEY_Q)};
+}
+
+Hands Window::poll(double seconds) {
+  if (seconds > 0.0) {
+    glfwWaitEventsTimeout(seconds);
   } else {
     glfwPollEvents();
   }
   return std::exchange(hands_, Hands{});
 }
 
+void Window::wake() { glfwPostEmptyEvent(); }
 void Window::swap() { glfwSwapBuffers(window_); }
 bool Window::closing() const { return glfwWindowShouldClose(window_) != 0; }
 void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+void Window::setTitle(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 void Window::framebufferSize(int& width, int& height) const {
   glfwGetFramebufferSize(window_, &width, &height);
 }

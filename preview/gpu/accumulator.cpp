@@ -48,9 +48,10 @@ void Accumulator::moveOn(const PixelRectangle& drawn) {
   ++sample_;
 }
 
-bool Accumulator::advance(const MarchPass& pass, const BrickAtlas& atlas, const Film& film, double seconds) {
+bool Accumulator::advance(const MarchPass& pass, const BrickAtlas& atlas, const Film& film, double seconds,
+                          unsigned until) {
   const auto start = Clock::now();
-  while (!done()) {
+  while (!done() && sample_ < until) {
     const PixelRectangle piece = next();
     const auto pieceStart = Clock::now();
     pass.draw(atlas, film, subPixelOffset(sample_, seed_), sample_, piece);

@@ -2,6 +2,8 @@
 // Depends on gpu/march_pass.h.
 #pragma once
 
+#include <limits>
+
 #include "preview/gpu/march_pass.h"
 
 namespace nephele {
@@ -13,9 +15,10 @@ class Accumulator {
   /// Draws `samples` samples a pixel for `seed` into a film of the given size, which must be clear.
   Accumulator(int width, int height, unsigned samples, unsigned seed);
 
-  /// Draws and waits for the GPU until `seconds` are over (at least one piece) or all is done. Returns false
-  /// once done.
-  bool advance(const MarchPass& pass, const BrickAtlas& atlas, const Film& film, double seconds);
+  /// Draws and waits for the GPU until `seconds` are over (at least one piece), `until` samples are whole or
+  /// all is done. Returns false once all is done.
+  bool advance(const MarchPass& pass, const BrickAtlas& atlas, const Film& film, double seconds,
+               unsigned until = std::numeric_limits<unsigned>::max());
 
   bool done() const { return sample_ >= samples_; }
   unsigned wholeSamples() const { return sample_; }

@@ -66,7 +66,20 @@ void Film::bindAsTarget() const {
 }
 
 void Film::bindForDisplay() const {
-  for (GLuint unit = 0; unit < 2; ++unit) glBindTextureUnit(unit, textures_[unit].name());
+  for (GLuint unit = 0; unit < kTargets; ++unit) glBindTextureUnit(unit, textures_[unit].name());
+}
+
+std::vector<float> Film::radianceSums() const { return texelsOf(textures_[0], width_, height_); }
+std::vector<float> Film::depthSums() const { return texelsOf(textures_[2], width_, height_); }
+
+double Film::depthAt(int x, int y) const {
+  NEPHELE_CHECK_LE(0, std::min(x, y));
+  NEPHELE_CHECK_LT(x, width_);
+  NEPHELE_CHECK_LT(y, height_);
+  float texel[kChannels] = {};
+  glGetTextureSubImage(textures_[2].name(), 0, x, y, 0, 1, 1, 1, GL_RGBA, GL_FLOAT, sizeof texel, texel);
+  checkGl("reading a depth back");
+  return texel[1] > 0.0f ? double{texel[0]} / double{texel[1]} : 0.0;
 }
 
 FilmPicture Film::read() const {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "base/picture.h"
 #include "preview/gpu/gl.h"
@@ -29,8 +30,15 @@ class Film {
   void clear();
   /// Makes the film the target of draws, which add to it.
   void bindAsTarget() const;
-  /// Binds radiance and transmittance sums to texture units 0 and 1, read smoothly between pixels.
+  /// Binds the three targets' sums to texture units 0, 1 and 2, read smoothly between pixels.
   void bindForDisplay() const;
+  /// Sums of radiance and alpha, four floats a pixel. To be divided by the samples.
+  std::vector<float> radianceSums() const;
+  /// Sums of the third target, four floats a pixel: weighted depth, its weight, densities read, rays cut
+  /// short.
+  std::vector<float> depthSums() const;
+  /// World distance from the camera to the medium seen in one pixel; 0 where none of it is.
+  double depthAt(int x, int y) const;
   /// Reads the sums back; pixels without samples are 0. One target at a time, so that memory stays small.
   FilmPicture read() const;
 

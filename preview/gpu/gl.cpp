@@ -1,12 +1,15 @@
 // Loading, messages and handles. Depends on glad and base.
 #include "preview/gpu/gl.h"
 
+#include <atomic>
 #include <cstdio>
 
 namespace nephele {
 namespace {
 
 constexpr int kNeededMajor = 4, kNeededMinor = 5;
+
+std::atomic<uint64_t> made{0}, destroyed{0};
 
 // What the driver complained of since the last check. A C callback must not throw, and GL is used from one
 // thread.
@@ -77,6 +80,10 @@ void finishGl(const std::string& call) {
   glFinish();
   checkGl(call);
 }
+
+GlCounts glCounts() { return {made.load(), destroyed.load()}; }
+void countMade() { ++made; }
+void countDestroyed() { ++destroyed; }
 
 void destroyTexture(GLuint name) { glDeleteTextures(1, &name); }
 void destroyBuffer(GLuint name) { glDeleteBuffers(1, &name); }

@@ -4,6 +4,7 @@
 
 #include <glad/gl.h>
 
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -26,19 +27,32 @@ void checkGl(const std::string& call);
 /// Waits until all commands given so far are done, then checks them.
 void finishGl(const std::string& call);
 
+/// GL objects that handles took and gave back since the program began, on all threads: for tests of leaks.
+struct GlCounts {
+  uint64_t made = 0;
+  uint64_t destroyed = 0;
+};
+GlCounts glCounts();
+void countMade();
+void countDestroyed();
+
 /// Owns one GL object; 0 is none. The context that made it must be current when it goes.
 template <void (*destroy)(GLuint)>
 class GlHandle {
  public:
   GlHandle() = default;
-  explicit GlHandle(GLuint name) : name_(name) {}
+  explicit GlHandle(GLuint name) : name_(name) {
+    if (name_ != 0) countMade();
+  }
   GlHandle(GlHandle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
   GlHandle& operator=(GlHandle&& other) noexcept {
     std::swap(name_, other.name_);
     return *this;
   }
   ~GlHandle() {
-    if (name_ != 0) destroy(name_);
+    if (name_ == 0) return;
+    destroy(name_);
+    countDestroyed();
   }
   GLuint name() const { return name_; }
 

@@ -6,18 +6,19 @@ namespace {
 
 // Locations and bindings as shaders/march.frag declares them.
 constexpr GLuint kParameterBinding = 0;
-constexpr GLint kSubPixelLocation = 0, kSampleNumberLocation = 1, kTexelSizeLocation = 2;
+constexpr GLint kSubPixelLocation = 0, kSampleNumberLocation = 1, kTexelSizeLocation = 2, kSliceLocation = 3;
 constexpr int kTriangleCorners = 3;
 
-std::vector<std::string> definesFor(Filter filter) {
-  return {filter == Filter::exact ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0"};
+std::vector<std::string> definesFor(Filter filter, MarchWrites writes) {
+  return {filter == Filter::exact ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
+          "NPH_VIEW " + std::to_string(static_cast<int>(writes))};
 }
 
 }  // namespace
 
-MarchPass::MarchPass(Filter filter, const std::vector<TextChange>& changes)
+MarchPass::MarchPass(Filter filter, const std::vector<TextChange>& changes, MarchWrites writes)
     : filter_(filter),
-      program_(buildProgram("screen.vert", "march.frag", definesFor(filter), changes)),
+      program_(buildProgram("screen.vert", "march.frag", definesFor(filter, writes), changes)),
       parameters_(makeBuffer()),
       noVertices_(makeVertexArray()) {
   glNamedBufferStorage(parameters_.name(), sizeof(shared::MarchParameters), nullptr, GL_DYNAMIC_STORAGE_BIT);
@@ -26,6 +27,10 @@ MarchPass::MarchPass(Filter filter, const std::vector<TextChange>& changes)
 
 void MarchPass::setParameters(const shared::MarchParameters& parameters) {
   glNamedBufferSubData(parameters_.name(), 0, sizeof parameters, &parameters);
+}
+
+void MarchPass::setSlice(int axis, float place) {
+  glProgramUniform2f(program_.name(), kSliceLocation, static_cast<float>(axis), place);
 }
 
 void MarchPass::draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPixel, unsigned number,

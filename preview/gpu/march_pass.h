@@ -19,11 +19,19 @@ struct PixelRectangle {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
+/// What a pass writes: the lit picture, or one of the looks inside of shaders/view.glsl.
+enum class MarchWrites { radiance, slice, skipped };
+
 /// The compiled march with its parameters.
 class MarchPass {
  public:
   /// Compiles for one filter; `changes` are for tests. Throws WorldError where the driver refuses.
-  explicit MarchPass(Filter filter, const std::vector<TextChange>& changes = {});
+  explicit MarchPass(Filter filter, const std::vector<TextChange>& changes = {},
+                     MarchWrites writes = MarchWrites::radiance);
+
+  /// For MarchWrites::slice: the plane across `axis` (0, 1, 2) at `place` voxels from the brick grid's
+  /// corner.
+  void setSlice(int axis, float place);
 
   void setParameters(const shared::MarchParameters& parameters);
   /// The lat-long picture that the parameters speak of; nullptr where they speak of none. Uploads only what

@@ -70,6 +70,37 @@ TEST(OrbitCamera, ZoomScalesTheDistance) {
   expectNear(orbit.camera().position, dvec3(2.0, 1.0, 1.0));
 }
 
+TEST(OrbitCamera, LooksAroundFromWhereItStands) {
+  OrbitCamera orbit(sideCamera());
+  orbit.look(0.5 * kPi, 0.0);
+  expectNear(orbit.camera().position, dvec3(5.0, 1.0, 1.0));
+  expectNear(orbit.camera().target, dvec3(5.0, -3.0, 1.0));
+}
+
+TEST(OrbitCamera, FliesAlongItsOwnAxes) {
+  // It looks along −x: forward is −x, right is +y.
+  OrbitCamera orbit(sideCamera());
+  orbit.fly(1.0, 2.0, 3.0);
+  expectNear(orbit.camera().position, dvec3(4.0, 3.0, 4.0));
+  expectNear(orbit.camera().target, dvec3(0.0, 3.0, 4.0));
+}
+
+TEST(OrbitCamera, FocusPutsAPointInTheMiddleWithoutTurning) {
+  OrbitCamera orbit(sideCamera());
+  orbit.focus(dvec3(3.0, 2.0, 0.0));
+  expectNear(orbit.camera().target, dvec3(3.0, 2.0, 0.0));
+  expectNear(orbit.camera().position, dvec3(5.0, 2.0, 0.0));
+  orbit.focus(dvec3(6.0, 2.0, 0.0));  // behind it
+  expectNear(orbit.camera().target, dvec3(3.0, 2.0, 0.0));
+}
+
+TEST(OrbitCamera, RaysGoThroughThePicture) {
+  const Camera camera = sideCamera();  // 90 degrees, along −x
+  expectNear(rayThrough(camera, 0.5, 0.5, 2.0), dvec3(-1.0, 0.0, 0.0));
+  expectNear(rayThrough(camera, 0.5, 0.0, 2.0), glm::normalize(dvec3(-1.0, 0.0, 1.0)));
+  expectNear(rayThrough(camera, 1.0, 0.5, 2.0), glm::normalize(dvec3(-1.0, 2.0, 0.0)));
+}
+
 TEST(Angles, RoundTripAboutAnyUp) {
   for (const dvec3& up : {dvec3(0, 0, 1), dvec3(0, 1, 0), dvec3(1, 0, 0), dvec3(0.6, 0.0, 0.8)}) {
     const dvec3 direction = glm::normalize(dvec3(0.3, 0.8, -0.5));

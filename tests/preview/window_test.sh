@@ -70,7 +70,9 @@ xdotool windowsize "$window" 480 320
 sleep 0.5
 xdotool key F1
 sleep 0.3
-xdotool key q
+xdotool key F1
+sleep 0.3
+xdotool key Escape
 wait "$program"
 code=$?
 [ "$code" -eq 0 ] || fail "exit code $code"

@@ -1,0 +1,288 @@
+// Files, settings and pictures of the desk. Depends on all of preview, volume and nlohmann_json.
+#include "preview/app/desk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "preview/app/scene_file.h"
+#include "preview/resolve.h"
+
+namespace nephele {
+namespace {
+
+constexpr size_t kMostUndo = 200;
+constexpr double kNoticeSeconds = 8.0;
+constexpr double kFirstPictureSeconds = 0.03;
+constexpr double kSmoothing = 0.1;      // of the frame rate: the share of the newest frame
+constexpr double kLongestFrame = 0.25;  // beyond it was rest, and no frame
+
+}  // namespace
+
+FirstVolume openFirst(const RenderOptions& options) {
+  FirstVolume first;
+  first.scene = openScene(options.scene, options.stepVoxels);
+  first.key = {options.file, options.grid};
+  first.stamp = stampOf(options.file);
+  first.volume = std::make_shared<const BrickVolume>(openVolume(options.file, options.grid));
+  return first;
+}
+
+Desk::Desk(const AppOptions& options, const FirstVolume& first, Window& window, ReadAhead& reader)
+    : options_(options),
+      window_(window),
+      firstScene_(first.scene),
+      document_(first.key, first.volume, first.stamp, reader),
+      viewer_(options.render.filter, options.render.seed),
+      history_(kMostUndo),
+      orbit_(Camera{}) {
+  state_.settings.scene = first.scene;
+  viewer_.setVolume(first.volume);
+}
+
+void Desk::begin() {
+  adopt(true);
+  if (width_ > 0 && height_ > 0 && work(kFirstPictureSeconds))
+    state_.settings.exposureEv = exposureFor(options_.render, viewer_.read());
+  writeStats();
+}
+
+void Desk::adopt(bool otherFile) {
+  const BrickVolume& volume = document_.volume();
+  window_.setTitle("Nephele: " + std::filesystem::path(volume.path).filename().string());
+  if (otherFile) {
+    Scene scene = state_.settings.scene;
+    scene.camera = firstScene_.camera;
+    scene.cameraUpGiven = firstScene_.cameraUpGiven;
+    scene.medium = firstScene_.medium;
+    std::string sentence;
+    const ViewedScene view = resolveScene(scene, volume, aspect(), sentence);
+    say(sentence);
+    std::cerr << describeLight(view) << '\n';
+    state_.settings.scene = view.scene;
+    state_.settings.medium = view.medium;
+    state_.settings.environmentMap = view.environmentMap;
+    state_.up = view.up;
+    state_.sceneFile = sceneFileFor(options_.folder, volume.path);
+    state_.kept.reset();
+    viewer_.endSplit();
+    history_ = History<Settings>(kMostUndo);
+    firstCamera_ = view.camera;
+    orbit_ = OrbitCamera(firstCamera_);
+  }
+  restart();
+}
+
+void Desk::exposeOther() {
+  const bool chosen = options_.render.scene.empty() && !options_.render.exposureEv;
+  if (!chosen || width_ < 1 || height_ < 1 || state_.view != View::radiance) return;
+  if (work(kFirstPictureSeconds)) state_.settings.exposureEv = chooseExposure(viewer_.read());
+}
+
+double Desk::aspect() const {
+  int width = 0, height = 0;
+  window_.framebufferSize(width, height);
+  return width > 0 && height > 0 ? static_cast<double>(width) / height : 1.0;
+}
+
+LaneRequest Desk::request(const Settings& settings) const {
+  return {{settings.scene, orbit_.camera(), settings.medium, state_.up, settings.environmentMap},
+          state_.view,
+          state_.slice,
+          width_,
+          height_};
+}
+
+void Desk::restart() {
+  window_.framebufferSize(width_, height_);
+  if (width_ < 1 || height_ < 1) return;
+  viewer_.setGoal(state_.goal);
+  viewer_.restart(Side::edited, request(state_.settings));
+  if (state_.kept) viewer_.restart(Side::kept, request(*state_.kept));
+}
+
+std::array<Shown, kSideCount> Desk::shown() const {
+  const Settings& kept = state_.kept.value_or(state_.settings);
+  return {{{state_.settings.scene, state_.settings.exposureEv}, {kept.scene, kept.exposureEv}}};
+}
+
+Screen Desk::screen(int width, int height) const {
+  return {0, width, height, state_.kept ? state_.divider : 0.0};
+}
+
+void Desk::show(int width, int height) { viewer_.show(screen(width, height), shown()); }
+
+bool Desk::work(double seconds) {
+  int width = 0, height = 0;
+  window_.framebufferSize(width, height);
+  if (width != width_ || height != height_) restart();
+  try {
+    return viewer_.work(seconds);
+  } catch (const InputError& error) {  // a setting or a size that cannot be drawn: the window goes on
+    say(error.what());
+    return false;
+  }
+}
+
+bool Desk::advance(double seconds) {
+  fly(seconds);
+  const DocumentNews news = document_.advance(seconds);
+  takeNews(news);
+  const bool moving = news.volume != nullptr || window_.flight().any();
+  const double frame = std::min(seconds, kLongestFrame);
+  frameSeconds_ =
+      moving ? (frameSeconds_ > 0.0 ? (1.0 - kSmoothing) * frameSeconds_ + kSmoothing * frame : frame)
+             : frameSeconds_;
+  if (noticeSeconds_ > 0.0 && (noticeSeconds_ -= seconds) <= 0.0) {
+    state_.notice.clear();
+    return true;
+  }
+  return moving || !news.notice.empty();
+}
+
+void Desk::takeNews(const DocumentNews& news) {
+  if (!news.notice.empty()) say(news.notice);
+  if (!news.volume) return;
+  try {
+    viewer_.setVolume(news.volume);
+  } catch (const std::exception& error) {  // too large for the GPU: the volume before stays
+    say(error.what());
+    return;
+  }
+  for (const std::string& note : news.volume->notes) std::cerr << note << '\n';
+  try {
+    adopt(news.otherFile);
+    if (news.otherFile) exposeOther();
+  } catch (const InputError& error) {  // its metadata holds no medium: the one before stays
+    say(error.what());
+    firstCamera_ = frameCamera(*news.volume, state_.up, orbit_.camera().fov, aspect());
+    orbit_ = OrbitCamera(firstCamera_);
+    restart();
+  }
+  writeStats();
+}
+
+std::optional<double> Desk::due() const {
+  std::optional<double> due = document_.timeline().due();
+  if (noticeSeconds_ > 0.0) due = std::min(due.value_or(noticeSeconds_), noticeSeconds_);
+  return due;
+}
+
+void Desk::say(const std::string& notice) {
+  state_.notice = notice;
+  noticeSeconds_ = kNoticeSeconds;
+  std::cerr << notice << '\n';
+}
+
+UiFacts Desk::facts() const {
+  UiFacts facts{document_, viewer_.stats(Side::edited), viewer_.gpuBytes(),
+                0.0,       history_.undoSteps(),        history_.redoSteps(),
+                {}};
+  if (frameSeconds_ > 0.0) facts.framesPerSecond = 1.0 / frameSeconds_;
+  facts.warnings = document_.volume().notes;
+  if (facts.stats.raysCutShort > 0.0)
+    facts.warnings.push_back("the driver cut " + std::to_string(std::llround(facts.stats.raysCutShort)) +
+                             " rays short and the picture is wrong: take longer steps");
+  return facts;
+}
+
+void Desk::writeStats() const {
+  if (options_.render.stats.empty()) return;
+  const GlCounts counts = glCounts();
+  const LaneStats lane = viewer_.stats(Side::edited);
+  const nlohmann::ordered_json stats{{"ms_per_frame", lane.sampleMilliseconds},
+                                     {"samples", lane.samples},
+                                     {"samples_per_pixel", lane.densitySamplesPerPixel},
+                                     {"noise", lane.noise},
+                                     {"gpu_bytes", viewer_.gpuBytes()},
+                                     {"gl_objects_made", counts.made},
+                                     {"gl_objects_alive", counts.made - counts.destroyed},
+                                     {"gl_renderer", glRenderer()}};
+  const std::string text = stats.dump(2) + "\n";
+  writeWhole(options_.render.stats, [&](const std::string& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) throw WorldError("cannot write '" + options_.render.stats + "'");
+  });
+}
+
+void Desk::change(const Settings& before) {
+  history_.changed(before);
+  restart();
+}
+
+void Desk::takeDrop(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  try {
+    if (ending == ".vdb")
+      document_.open(path);
+    else if (ending == ".yaml" || ending == ".yml")
+      adoptScene(path);
+    else if (ending == ".exr")
+      adoptEnvironment(path);
+    else
+      say("'" + std::filesystem::path(path).filename().string() +
+          "' is no .vdb, no .yaml with a scene and no .exr of the sky");
+  } catch (const InputError& error) {
+    say(error.what());
+  }
+}
+
+void Desk::adoptScene(const std::string& path) {
+  const Settings before = state_.settings;
+  std::string sentence;
+  const ViewedScene view = resolveScene(loadScene(path), document_.volume(), aspect(), sentence);
+  state_.settings.scene = view.scene;
+  state_.settings.medium = view.medium;
+  state_.settings.environmentMap = view.environmentMap;
+  if (view.scene.camera) orbit_ = OrbitCamera(view.camera);
+  change(before);
+  history_.rest();
+  say("took over the scene of " + std::filesystem::path(path).filename().string());
+}
+
+void Desk::adoptEnvironment(const std::string& path) {
+  const auto map = loadEnvironmentMap(path);
+  const Settings before = state_.settings;
+  state_.settings.environmentMap = map;
+  state_.settings.scene.environment.kind = Environment::Kind::exr;
+  state_.settings.scene.environment.exr.path = path;
+  change(before);
+  history_.rest();
+  say("lit by " + std::filesystem::path(path).filename().string());
+}
+
+void Desk::undoOrRedo(bool undo) {
+  const auto value = undo ? history_.undo(state_.settings) : history_.redo(state_.settings);
+  if (!value) {
+    say(undo ? "nothing to undo" : "nothing to redo");
+    return;
+  }
+  state_.settings = *value;
+  restart();
+}
+
+void Desk::split() {
+  if (state_.kept) {
+    state_.kept.reset();
+    viewer_.endSplit();
+  } else {
+    state_.kept = state_.settings;
+  }
+  restart();
+}
+
+void Desk::swapSides() {
+  if (!state_.kept) return;
+  const Settings before = state_.settings;
+  std::swap(state_.settings, *state_.kept);
+  change(before);
+  history_.rest();
+}
+
+}  // namespace nephele

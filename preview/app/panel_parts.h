@@ -1,0 +1,24 @@
+// The panel's parts, each a file. They build widgets between ImGui's NewFrame and Render. Depends on
+// app/ui_state.h.
+#pragma once
+
+#include "preview/app/ui_state.h"
+
+namespace nephele {
+
+/// Lights, environment, medium and orders of scattering.
+void lightParts(UiState& state, UiWishes& wishes);
+/// March, view, split and goal at rest.
+void viewParts(UiState& state, const UiFacts& facts, UiWishes& wishes);
+/// File, grid, undo, scene and pictures.
+void fileParts(UiState& state, const UiFacts& facts, UiWishes& wishes);
+/// The strip at the lower edge; nothing where there is no sequence.
+void timelineStrip(const UiFacts& facts, UiWishes& wishes);
+/// The head-up line, warnings and notice at the upper right; warnings alone where `full` is false.
+void headUpLine(const UiState& state, const UiFacts& facts, bool full);
+/// The divider of the split, and the scale of the view's colours.
+void pictureMarks(const UiState& state, const UiFacts& facts);
+/// The list of keys.
+void helpWindow(bool& open);
+
+}  // namespace nephele

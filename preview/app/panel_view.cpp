@@ -1,0 +1,72 @@
+// March, views, split, goal at rest. Depends on imgui and scene.
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "preview/app/panel_parts.h"
+#include "preview/app/widgets.h"
+
+namespace nephele {
+namespace {
+
+bool marchWidgets(MarchSettings& march) {
+  constexpr double kShortest = 0.05, kLongest = 16.0;
+  bool changed = widgets::slider("step", march.stepVoxels, kShortest, kLongest, "%.2f voxels", true);
+  changed |= widgets::slider("shadow step", march.shadowStepVoxels, kShortest, kLongest, "%.2f voxels", true);
+  changed |= widgets::slider("shadow growth", march.shadowGrowth, 1.0, 2.0, "%.2f");
+  return changed;
+}
+
+bool viewWidgets(UiState& state) {
+  bool changed = false;
+  if (ImGui::BeginCombo("shows", rowOf(state.view).name.data())) {
+    for (int i = 0; i < kViewCount; ++i) {
+      const View view = static_cast<View>(i);
+      if (ImGui::Selectable(rowOf(view).name.data(), view == state.view)) {
+        state.view = view;
+        changed = true;
+      }
+    }
+    ImGui::EndCombo();
+  }
+  if (state.view != View::slice) return changed;
+  constexpr const char* kAxes = "x\0y\0z\0";
+  changed |= ImGui::Combo("across", &state.slice.axis, kAxes);
+  changed |= widgets::slider("at", state.slice.place, 0.0, 1.0, "%.3f of the box");
+  return changed;
+}
+
+bool goalWidgets(RestGoal& goal) {
+  constexpr double kPercent = 100.0, kLeast = 0.05, kMost = 5.0;
+  double percent = goal.tolerance * kPercent;
+  if (!widgets::slider("noise at rest", percent, kLeast, kMost, "%.2f %%", true)) return false;
+  goal.tolerance = percent / kPercent;
+  return true;
+}
+
+void splitWidgets(UiState& state, UiWishes& wishes) {
+  if (ImGui::SmallButton(state.kept ? "end split" : "split")) wishes.actions.push_back(Action::split);
+  if (!state.kept) return;
+  ImGui::SameLine();
+  if (ImGui::SmallButton("swap")) wishes.actions.push_back(Action::swapSides);
+  ImGui::SameLine();
+  ImGui::TextDisabled("left is kept");
+}
+
+}  // namespace
+
+void viewParts(UiState& state, const UiFacts& facts, UiWishes& wishes) {
+  constexpr double kMostEv = 16.0;
+  wishes.settings |= widgets::slider("exposure", state.settings.exposureEv, -kMostEv, kMostEv, "%.2f EV");
+  widgets::group("View", false, [&] {
+    wishes.picture |= viewWidgets(state);
+    splitWidgets(state, wishes);
+  });
+  widgets::group("March", false, [&] {
+    wishes.settings |= marchWidgets(state.settings.scene.march);
+    wishes.picture |= goalWidgets(state.goal);
+    ImGui::TextDisabled("%.0f densities a pixel and sample", facts.stats.densitySamplesPerPixel);
+  });
+}
+
+}  // namespace nephele

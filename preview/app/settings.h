@@ -1,0 +1,19 @@
+// What undo covers: everything that makes the light, and how bright it is shown. Depends on scene alone.
+#pragma once
+
+#include <memory>
+
+#include "scene/environment_map.h"
+#include "scene/scene.h"
+
+namespace nephele {
+
+/// The medium is the one in use, wherever it came from; camera and medium inside `scene` are not looked at.
+struct Settings {
+  Scene scene;
+  Medium medium;
+  std::shared_ptr<const EnvironmentMap> environmentMap;  // the picture of scene.environment.exr.path, if read
+  double exposureEv = 0.0;
+};
+
+}  // namespace nephele
