@@ -92,7 +92,7 @@ int diff(const Command& command) {
   const double tolerance = command.tolerance.empty() ? -1.0 : parseTolerance(command.tolerance);
   const GridDifference d = differenceOfFiles(command.first, command.second);
   std::cout << (command.json ? differenceAsJson(d, command.first, command.second) : differenceAsText(d));
-  const bool over = std::max(d.relativeDensity(), d.relativeDepth()) > tolerance;
+  const bool over = std::max({d.relativeDensity(), d.relativeDepth(), d.relativeVelocity()}) > tolerance;
   return tolerance >= 0.0 && over ? kExitNo : kExitDone;
 }
 
@@ -129,13 +129,14 @@ int run(int argc, char** argv) {
   nodesCommand
       ->add_option("--markdown", command.page, "Write fields.md and a picture of each field into this folder")
       ->type_name("DIR");
-  CLI::App* const diffCommand =
-      app.add_subcommand("diff", "Density and optical-depth difference; exit 3 if over the tolerance");
+  CLI::App* const diffCommand = app.add_subcommand(
+      "diff", "Density, optical-depth and velocity difference; exit 3 if over the tolerance");
   diffCommand->add_option("A.vdb", command.first, "The reference")->required();
   diffCommand->add_option("B.vdb", command.second, "What is held against it")->required();
   diffCommand
-      ->add_option("--tolerance", command.tolerance,
-                   "Largest density and optical-depth difference, relative to A's largest: 0.03 or 3%")
+      ->add_option(
+          "--tolerance", command.tolerance,
+          "Largest density, optical-depth and velocity difference, relative to A's largest: 0.03 or 3%")
       ->type_name("E");
   diffCommand->add_flag("--json", command.json, "As JSON");
   for (const char* const name : {"check", "chart"})

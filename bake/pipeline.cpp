@@ -5,6 +5,7 @@
 #include <charconv>
 #include <filesystem>
 #include <set>
+#include <tuple>
 
 #include "bake/field_specs.h"
 #include "bake/fields/motion.h"
@@ -51,6 +52,56 @@ void readLoop(yaml::MapReader& reader, Asset& asset, Diagnostics& out) {
                                        {1.0, kLongestLoop, false, false}, out);
 }
 
+/// The field with every curl whose component is left open as that of one axis; equal to the field itself
+/// where it holds none. Shared fields stay shared.
+FieldSpecPtr componentOf(const FieldSpecPtr& spec, char axis,
+                         std::map<const FieldSpec*, FieldSpecPtr>& done) {
+  FieldSpecPtr& known = done[spec.get()];
+  if (known) return known;
+  const bool open = spec->row->name == "curl" && !spec->places.contains("component");
+  auto copy = std::make_shared<FieldSpec>(*spec);
+  bool changed = open;
+  if (open) copy->values["component"] = std::string(1, axis);
+  for (auto& [name, children] : copy->children)
+    for (FieldSpecPtr& child : children) {
+      FieldSpecPtr part = componentOf(child, axis, done);
+      changed = changed || part != child;
+      child = std::move(part);
+    }
+  // `known` may have moved while children were added.
+  return done[spec.get()] = changed ? FieldSpecPtr(copy) : spec;
+}
+
+/// `velocity: true`, a field that holds a curl, or a list of three fields.
+void readVelocity(yaml::MapReader& reader, Asset& asset, FieldReader& fields, Diagnostics& out) {
+  const yaml::NodePtr node = reader.find("velocity");
+  if (!node || (node->kind == yaml::Kind::scalar && node->scalar == "false")) return;
+  if (node->kind == yaml::Kind::scalar && node->scalar == "true") {
+    asset.velocityFromMotion = true;
+    return;
+  }
+  if (node->kind == yaml::Kind::sequence) {
+    if (node->items.size() != 3)
+      out.add(node->where,
+              "'velocity' takes three fields, one a component, not " + std::to_string(node->items.size()));
+    else
+      for (const yaml::NodePtr& item : node->items)
+        asset.velocityFields.push_back(fields.read(item, "a component of 'velocity'"));
+    return;
+  }
+  const FieldSpecPtr field = fields.read(node, "'velocity' (or true, or three fields)");
+  if (!field) return;
+  for (const char axis : {'x', 'y', 'z'}) {
+    std::map<const FieldSpec*, FieldSpecPtr> done;
+    asset.velocityFields.push_back(componentOf(field, axis, done));
+  }
+  if (asset.velocityFields.front() == field) {
+    out.add(node->where, "'velocity' needs three components and this field has one",
+            "give a curl without 'component', or a list of three fields");
+    asset.velocityFields.clear();
+  }
+}
+
 /// Every field of a spec once, however often it is shared.
 template <class Visit>
 void forEachSpec(const FieldSpec& spec, std::set<const FieldSpec*>& seen, const Visit& visit) {
@@ -60,14 +111,27 @@ void forEachSpec(const FieldSpec& spec, std::set<const FieldSpec*>& seen, const 
     for (const FieldSpecPtr& child : children) forEachSpec(*child, seen, visit);
 }
 
+struct PlaceOrder {
+  bool operator()(const SourceLocation& a, const SourceLocation& b) const {
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  }
+};
+
 /// The asset's own fields that move, with their motion.
 std::vector<std::pair<const FieldSpec*, Motion>> motionsOf(const Asset& asset) {
   std::vector<std::pair<const FieldSpec*, Motion>> list;
   std::set<const FieldSpec*> seen;
-  if (asset.density)
-    forEachSpec(*asset.density, seen, [&](const FieldSpec& spec) {
-      if (spec.row->motion) list.emplace_back(&spec, spec.row->motion(Arguments(spec.values)));
-    });
+  const auto take = [&](const FieldSpec& spec) {
+    if (spec.row->motion) list.emplace_back(&spec, spec.row->motion(Arguments(spec.values)));
+  };
+  if (asset.density) forEachSpec(*asset.density, seen, take);
+  // Components of one curl move alike: the first stands for all.
+  std::set<SourceLocation, PlaceOrder> places;
+  for (const FieldSpecPtr& component : asset.velocityFields)
+    if (component)
+      forEachSpec(*component, seen, [&](const FieldSpec& spec) {
+        if (places.insert(spec.where).second) take(spec);
+      });
   return list;
 }
 
@@ -113,6 +177,7 @@ Asset readAsset(const yaml::Entry& entry, FieldReader& fields, Diagnostics& out)
     asset.density = fields.read(density, "'density'");
   else if (!particles)
     out.add(entry.where, what + " needs 'density'");
+  readVelocity(reader, asset, fields, out);
   checkLoop(asset, out);
   reader.finish();
   return asset;
@@ -263,7 +328,10 @@ std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::option
     hasher.value(pipeline.scene->medium->sigmaA);
     hasher.value(pipeline.scene->medium->g);
   }
-  hasher.text(SpecHasher().digest(*asset.density));
+  SpecHasher specs;
+  hasher.text(specs.digest(*asset.density));
+  hasher.value(int(asset.velocityFromMotion));
+  for (const FieldSpecPtr& component : asset.velocityFields) hasher.text(specs.digest(*component));
   return hasher.hex();
 }
 

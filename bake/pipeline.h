@@ -44,6 +44,8 @@ struct Asset {
   double fps = 24.0;
   std::optional<int64_t> loopFrames;  // frames after which all motion comes round
   FieldSpecPtr density;
+  bool velocityFromMotion = false;           // `velocity: true`
+  std::vector<FieldSpecPtr> velocityFields;  // or three fields, x, y and z; else empty
 };
 
 struct Pipeline {

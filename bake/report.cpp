@@ -50,6 +50,13 @@ std::string reportAsJson(const std::vector<BakeRecord>& records) {
                        {"cell_voxels", note.cellVoxels},
                        {"weight", note.weight}});
     entry["band_limit"] = std::move(notes);
+    if (!record.velocityHash.empty()) {
+      entry["velocity"] = {{"content_hash", record.velocityHash}};
+      if (!record.skipped) {
+        entry["velocity"]["largest_speed"] = record.largestSpeed;
+        entry["velocity"]["seconds"] = record.secondsVelocity;
+      }
+    }
     if (record.loopFrames) entry["loop"] = loopJson(record);
     assets.push_back(std::move(entry));
   }

@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 
+#include "bake/velocity.h"
 #include "bake/voxelize.h"
 #include "base/files.h"
 #include "base/progress.h"
@@ -71,13 +72,32 @@ void describe(const std::string& file, BakeRecord& record) {
   const FileInfo info = inspectFile(file);
   record.bytes = info.fileBytes;
   for (const GridInfo& grid : info.grids) {
-    record.voxelsActive += grid.activeVoxels;
+    if (grid.name == "density") record.voxelsActive += grid.activeVoxels;
     record.gridBytes += grid.bytes;
     if (grid.name == "density") record.contentHash = grid.contentHash;
+    if (grid.name == "vel") record.velocityHash = grid.contentHash;
   }
   if (const auto mass = info.metadata.find("mass"); mass != info.metadata.end())
     record.mass = std::stod(mass->second);
   record.peakBytes = peakBytes();
+}
+
+VoxelizeSettings settingsOf(const Asset& asset) {
+  return {asset.voxelSize, asset.cutoff, asset.precision == Precision::half};
+}
+
+[[noreturn]] void refuse(const Asset& asset, const VoxelizeError& error) {
+  throw InputError(asset.where, "asset '" + asset.name + "': " + error.what());
+}
+
+Velocities fillVelocity(const VectorField& velocity, const Voxelized& density, const Asset& asset) {
+  try {
+    return voxelizeVelocity(
+        density, settingsOf(asset),
+        [&](const Lattice& lattice, float* x, float* y, float* z) { velocity.evaluate(lattice, x, y, z); });
+  } catch (const VoxelizeError& error) {
+    refuse(asset, error);
+  }
 }
 
 Voxelized fill(const Field& field, const Asset& asset, const std::string& label, bool quiet) {
@@ -91,9 +111,9 @@ Voxelized fill(const Field& field, const Asset& asset, const std::string& label,
     drawn = std::max(drawn, leaves);
   };
   try {
-    return voxelize(field, {asset.voxelSize, asset.cutoff, asset.precision == Precision::half}, progress);
+    return voxelize(field, settingsOf(asset), progress);
   } catch (const VoxelizeError& error) {
-    throw InputError(asset.where, "asset '" + asset.name + "': " + error.what());
+    refuse(asset, error);
   }
 }
 
@@ -124,8 +144,18 @@ BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::stri
     record.seam = measureSeam(pipeline, *job.asset, voxelized, quiet);
     record.secondsSeam = secondsSince(start);
   }
+  std::optional<Velocities> velocities;
+  context.notes = nullptr;  // the density has told them
+  if (const VectorFieldPtr velocity = buildVelocity(*job.asset, context)) {
+    start = std::chrono::steady_clock::now();
+    velocities = fillVelocity(*velocity, voxelized, *job.asset);
+    record.velocityHash = velocities->contentHash;
+    record.largestSpeed = velocities->largestSpeed;
+    record.secondsVelocity = secondsSince(start);
+  }
   start = std::chrono::steady_clock::now();
-  record.bytes = writeDensity(job.file, voxelized, provenanceOf(pipeline, job, hash));
+  record.bytes = writeDensity(job.file, voxelized, provenanceOf(pipeline, job, hash),
+                              velocities ? &*velocities : nullptr);
   record.secondsWrite = secondsSince(start);
   record.voxelsActive = voxelized.voxelsActive;
   record.voxelsEvaluated = voxelized.voxelsEvaluated;
@@ -162,6 +192,8 @@ void tell(const BakeRecord& record) {
   for (const LoopNote& note : record.loopNotes)
     std::cerr << "  " << note.field << ": '" << note.parameter << "' of " << note.asked << " became "
               << note.used << " to close the loop\n";
+  if (!record.skipped && !record.velocityHash.empty())
+    std::cerr << "  vel: speeds up to " << record.largestSpeed << " world units per second\n";
   if (record.seam)
     std::cerr << "  loop of " << *record.loopFrames << " frames: largest difference "
               << record.seam->largestDifference << " between frames " << *record.frame << " and "

@@ -50,7 +50,9 @@ struct BakeRecord {
   double secondsFill = 0.0, secondsHash = 0.0, secondsSeam = 0.0, secondsWrite = 0.0;
   uint64_t voxelsActive = 0, voxelsEvaluated = 0;
   uint64_t gridBytes = 0, bytes = 0, peakBytes = 0;
-  std::string contentHash;
+  std::string contentHash;                           // of the density
+  std::string velocityHash;                          // of the grid vel; empty where there is none
+  double largestSpeed = 0.0, secondsVelocity = 0.0;  // world units per second
   double mass = 0.0, maximum = 0.0;
   std::vector<BandLimitNote> bandLimit;
   std::optional<int64_t> loopFrames;

@@ -217,10 +217,13 @@ Voxelized voxelize(const Field& field, const VoxelizeSettings& settings, const L
 
 std::string contentHashOf(const Voxelized& voxelized) { return contentHash(*voxelized.grid->grid); }
 
-uint64_t writeDensity(const std::string& path, const Voxelized& voxelized, const Provenance& provenance) {
+uint64_t writeDensity(const std::string& path, const Voxelized& voxelized, const Provenance& provenance,
+                      const Velocities* velocities) {
   Provenance complete = provenance;
   complete.mass = voxelized.mass;
-  return writeVdb(path, {voxelized.grid->grid}, complete);
+  openvdb::GridCPtrVec grids{voxelized.grid->grid};
+  if (velocities) grids.push_back(velocities->grid->grid);
+  return writeVdb(path, grids, complete);
 }
 
 }  // namespace nephele

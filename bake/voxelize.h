@@ -53,7 +53,25 @@ std::string contentHashOf(const Voxelized& voxelized);
 /// The largest |density difference| over all voxels. 0 where the grids' voxels and values are the same.
 double largestDifference(const Voxelized& a, const Voxelized& b);
 
-/// Writes the grid to `path`, whole or not at all; returns the file's size in bytes. Throws WorldError.
-uint64_t writeDensity(const std::string& path, const Voxelized& voxelized, const Provenance& provenance);
+/// OpenVDB's grid "vel", pruned at tolerance 0.
+struct VelocityGrid;
+
+struct Velocities {
+  std::shared_ptr<const VelocityGrid> grid;
+  double largestSpeed = 0.0;  // world units per second, as stored
+  std::string contentHash;
+};
+
+/// Velocities at the density's active voxels, in its precision, by leaves in parallel. `evaluate` fills 512
+/// floats a component for a block, world units per second. The same on any number of threads. Throws
+/// VoxelizeError where one is not finite or more than the precision holds.
+Velocities voxelizeVelocity(
+    const Voxelized& density, const VoxelizeSettings& settings,
+    const std::function<void(const Lattice& lattice, float* x, float* y, float* z)>& evaluate);
+
+/// Writes the grid, and the velocities where there are any, to `path`, whole or not at all; returns the
+/// file's size in bytes. Throws WorldError.
+uint64_t writeDensity(const std::string& path, const Voxelized& voxelized, const Provenance& provenance,
+                      const Velocities* velocities = nullptr);
 
 }  // namespace nephele

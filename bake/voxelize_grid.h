@@ -9,4 +9,8 @@ struct VoxelGrid {
   openvdb::FloatGrid::Ptr grid;
 };
 
+struct VelocityGrid {
+  openvdb::Vec3SGrid::Ptr grid;
+};
+
 }  // namespace nephele

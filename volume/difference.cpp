@@ -145,6 +145,7 @@ double relative(double difference, double to) {
 
 double GridDifference::relativeDensity() const { return relative(largest, maximumA); }
 double GridDifference::relativeDepth() const { return relative(largestDepth, largestDepthA); }
+double GridDifference::relativeVelocity() const { return relative(largestVelocity, largestSpeedA); }
 
 GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t rays) {
   GridDifference d;
@@ -172,7 +173,9 @@ GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t r
 }
 
 GridDifference differenceOfFiles(const std::string& pathA, const std::string& pathB) {
-  return difference(loadBricks(pathA), loadBricks(pathB));
+  GridDifference d = difference(loadBricks(pathA), loadBricks(pathB));
+  compareVelocities(pathA, pathB, d);
+  return d;
 }
 
 std::string differenceAsText(const GridDifference& d) {
@@ -187,11 +190,17 @@ std::string differenceAsText(const GridDifference& d) {
                 static_cast<unsigned long long>(d.voxelsOnlyA),
                 static_cast<unsigned long long>(d.voxelsOnlyB),
                 d.sameTransform ? "" : " (transforms differ: each was read between its samples)");
-  return text;
+  std::string all = text;
+  if (d.velocities) {
+    std::snprintf(text, sizeof text, "velocity: largest difference %.6g (%.4g%% of %.6g)\n",
+                  d.largestVelocity, 100.0 * d.relativeVelocity(), d.largestSpeedA);
+    all += text;
+  }
+  return all;
 }
 
 std::string differenceAsJson(const GridDifference& d, const std::string& pathA, const std::string& pathB) {
-  const nlohmann::ordered_json json{
+  nlohmann::ordered_json json{
       {"a", pathA},
       {"b", pathB},
       {"same_transform", d.sameTransform},
@@ -207,6 +216,10 @@ std::string differenceAsJson(const GridDifference& d, const std::string& pathA, 
         {"rms", d.rmsDepth},
         {"largest_a", d.largestDepthA}}},
       {"voxels", {{"both", d.voxelsBoth}, {"only_a", d.voxelsOnlyA}, {"only_b", d.voxelsOnlyB}}}};
+  if (d.velocities)
+    json["velocity"] = {{"largest", d.largestVelocity},
+                        {"relative", d.relativeVelocity()},
+                        {"largest_speed_a", d.largestSpeedA}};
   return json.dump(2) + "\n";
 }
 

@@ -23,18 +23,28 @@ struct GridDifference {
   double largestDepth = 0.0;   // largest |depth difference|
   double rmsDepth = 0.0;
 
-  /// The two figures that --tolerance judges: over A's maximum, over A's largest depth. 0 where both are 0,
-  /// infinite where A is empty and B is not.
+  // Grids `vel`: 0 where neither file has one; where one has none, its velocities are 0.
+  bool velocities = false;
+  double largestSpeedA = 0.0;
+  double largestVelocity = 0.0;  // largest |vector difference| at the voxels of either
+
+  /// The figures that --tolerance judges: over A's maximum, A's largest depth, A's largest speed. 0 where
+  /// both are 0, infinite where A is empty and B is not.
   double relativeDensity() const;
   double relativeDepth() const;
+  double relativeVelocity() const;
 };
 
 /// Compares over all samples of both grids and along `rays` random chords of their common box (uniform ends
 /// on its bounding sphere, fixed seed). Same result on any number of threads.
 GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t rays = 10000);
 
-/// The same for the density grids of two files. Throws as loadBricks does.
+/// The same for the density grids of two files, and their grids `vel`. Throws as loadBricks does.
 GridDifference differenceOfFiles(const std::string& pathA, const std::string& pathB);
+
+/// Fills the figures of velocities from two files. Velocities lie in index space: where voxels differ in
+/// size, those of B are read at the voxel nearest to A's. Throws as readVdb does.
+void compareVelocities(const std::string& pathA, const std::string& pathB, GridDifference& d);
 
 std::string differenceAsText(const GridDifference& d);
 std::string differenceAsJson(const GridDifference& d, const std::string& pathA, const std::string& pathB);

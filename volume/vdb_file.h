@@ -22,6 +22,9 @@ void initializeOpenVdb();
 /// compilation a file).
 openvdb::FloatGrid::Ptr makeFogGrid(const std::string& name, double voxelSize, bool saveAsHalf);
 
+/// An empty Vec3SGrid "vel" of the same voxels: contravariant relative, world units per second.
+openvdb::Vec3SGrid::Ptr makeVelocityGrid(double voxelSize, bool saveAsHalf);
+
 /// Writes the grids to `path` with Blosc and the active mask, whole or not at all; `provenance` becomes
 /// metadata of the file. Returns the file's size in bytes. Throws WorldError.
 uint64_t writeVdb(const std::string& path, const openvdb::GridCPtrVec& grids, const Provenance& provenance);

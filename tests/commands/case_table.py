@@ -62,6 +62,11 @@ BAKE = [
     wrong("radius: 1.0, falloff: 0.5", "radius: wide, fallof: 0.5", "pipeline.yaml:6:25: error: 'radius'",
           "pipeline.yaml:6:31: error: unknown key 'fallof'"),
     wrong("assets:", "assets: {}\nrest:", "error:"),
+    # motion
+    wrong("    density:", "    loop: true\n    density:", "pipeline.yaml:5:5: error: 'loop' needs 'frames'"),
+    wrong("    density:", "    frames: 1-4\n    loop: maybe\n    density:", "pipeline.yaml:6:11: error: 'loop'"),
+    wrong("sphere: { radius: 1.0, falloff: 0.5 }", "perlin: { evolve: .inf }", "pipeline.yaml:6:25: error: 'evolve'"),
+    wrong("    density:", "    velocity: sphere\n    density:", "pipeline.yaml:5:15: error: 'velocity' needs three"),
     # densities that no grid can hold
     wrong("voxel_size: 0.1", "voxel_size: 0.0000001", "pipeline.yaml:", "error:", "voxels"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "constant: { value: 1 }", "pipeline.yaml:", "error:"),
