@@ -51,12 +51,14 @@ void addRenderOptions(CLI::App& app, Arguments& a) {
                  "moonlight, overcast");
   app.add_option("--grid", a.render.grid,
                  "The grid to show (default: density, else the first float fog grid)");
-  app.add_option("--spp", a.render.samples, "Samples a pixel")
-      ->capture_default_str()
+  app.add_option("--spp", a.render.samples, "Samples a pixel (default: 4; 64 for the reference)")
       ->check(CLI::Range(1u, 1u << 20));
   app.add_option("--step", a.step, "Length of a step, voxels (default: the scene's, 0.5)")
       ->check(CLI::Range(0.01, 100.0));
-  app.add_option("--error", a.error, "Relative RMSE to reach, as in 1%");
+  app.add_option("--bounces", a.render.bounces,
+                 "Scatterings after the first, for --method reference (default: all; 0 is single scattering)")
+      ->check(CLI::Range(0, 1000000));
+  app.add_option("--error", a.error, "Relative RMSE to reach, as in 1% (--method reference: its own noise)");
   app.add_option("--stats", a.render.stats, "Write time, samples and memory to a JSON file");
   app.add_option("--seed", a.render.seed, "Seed of all random numbers")->capture_default_str();
   app.add_option("--exposure", a.exposure,
@@ -75,7 +77,10 @@ int renderOrShow(Arguments& a, bool renderGiven, bool stepGiven, bool exposureGi
   if (std::isnan(a.step)) throw InputError({}, "--step must be a number of voxels");
   if (std::isnan(a.exposure)) throw InputError({}, "--exposure must be a number of EV");
   if (renderGiven && a.render.out.empty()) throw InputError({}, "--render needs OUT.exr or OUT.png");
-  if (!a.error.empty()) throw InputError({}, "--error is not built yet");
+  if (!a.error.empty()) {
+    a.render.error = parseTolerance(a.error);
+    if (!(a.render.error > 0.0)) throw InputError({}, "--error should be greater than 0");
+  }
   if (stepGiven) a.render.stepVoxels = a.step;
   if (exposureGiven) a.render.exposureEv = a.exposure;
   a.render.filter = a.filter == "exact" ? Filter::exact : Filter::hardware;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "preview/gpu/march_method.h"
+#include "preview/truth/reference_method.h"
 
 namespace nephele {
 namespace {
@@ -15,7 +16,8 @@ constexpr MethodRow kMethods[] = {
     {"dda", "an exact voxel walk through piecewise-constant density", nullptr},
     {"impostor", "camera-facing quads textured by ray marching", nullptr},
     {"phenomenological", "a surface shader for cumulus", nullptr},
-    {"reference", "unbiased path tracing", nullptr},
+    {"reference", "unbiased path tracing on the CPU: delta tracking, ratio tracking, roulette",
+     makeReferenceMethod},
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,9 @@ struct PictureRequest {
   unsigned samples = 4;  // a pixel
   unsigned seed = 0;
   bool quiet = false;  // no progress bar
+  // The rest is for methods that know truth (`reference`).
+  std::optional<int> bounces{};  // scatterings after the first; none: all
+  double error = 0.0;            // above 0: samples until the picture's noise is at most this relative RMSE
 };
 
 /// What a picture cost.
@@ -35,6 +39,7 @@ struct PictureCost {
   double milliseconds = 0.0;            // from the first draw to the last pixel read back
   double densitySamplesPerPixel = 0.0;  // densities read for the whole picture / pixels
   uint64_t gpuBytes = 0;                // bricks, index, picture, parameters
+  double relativeError = 0.0;           // the picture's own noise as relative RMSE, where the method knows it
 };
 
 /// One way to find radiance. Used from the thread that made it.
@@ -45,8 +50,8 @@ class Method {
   /// sequence.
   virtual void setVolume(const BrickVolume& bricks) = 0;
   /// Renders linear radiance and alpha, premultiplied, with planes R, G, B, A, transmittance.R, .G, .B,
-  /// depth. An empty volume gives a picture without medium. Throws InputError for settings that cannot be
-  /// rendered, else WorldError.
+  /// depth; a method may add further planes behind. An empty volume gives a picture without medium. Throws
+  /// InputError for settings that cannot be rendered, else WorldError.
   virtual Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) = 0;
 
   /// Who computed: GL_RENDERER, and the seconds that starting the driver and building the shaders took.

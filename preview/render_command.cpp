@@ -24,6 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::string_view kReferenceMethod = "reference";
 constexpr size_t kColourPlanes = 4;  // R, G, B, A come first
 
 double secondsSince(Clock::time_point start) {
@@ -55,9 +56,14 @@ void checkOptions(const RenderOptions& options) {
   if (!exr && !hasExtension(options.out, ".png"))
     complaints.add({}, "--render '" + options.out + "' should end in .exr or .png");
   if (options.aov && !exr) complaints.add({}, "--aov needs an .exr: a .png holds no further channels");
-  if (options.samples == 0) complaints.add({}, "--spp should be at least 1");
+  if (options.samples == 0u) complaints.add({}, "--spp should be at least 1");
   if (options.frames && options.frames->first > options.frames->second)
     complaints.add({}, "--frames: the first frame is after the last");
+  if (options.bounces && options.method != kReferenceMethod)
+    complaints.add({},
+                   "--bounces needs --method reference; the march takes its orders from the scene's octaves");
+  if (options.error > 0.0 && options.method != kReferenceMethod)
+    complaints.add({}, "--error needs --method reference; other methods do not know their error yet");
   complaints.throwIfAny();
 }
 
@@ -103,12 +109,13 @@ class Sequence {
       std::string sentence;
       view_ = resolveScene(scene_, bricks, static_cast<double>(options_.width) / options_.height, sentence);
       std::cerr << sentence << '\n' << describeLight(*view_) << '\n';
+      if (isReference()) tellWhatIsLeftOut();
       method_ = row_.make({options_.filter});
     }
     method_->setVolume(bricks);
     PictureCost cost;
-    Picture picture = method_->render(
-        *view_, {options_.width, options_.height, options_.samples, options_.seed, false}, cost);
+    Picture picture = method_->render(*view_, request(), cost);
+    if (cost.relativeError > 0.0) std::cerr << "noise: " << 100.0 * cost.relativeError << "% relative RMSE\n";
     if (!exposureEv_) exposureEv_ = hasExtension(out, ".png") ? exposureFor(options_, picture) : 0.0;
     writePicture(out, std::move(picture), *view_, *exposureEv_, options_.aov);
     ++totals_.frames;
@@ -122,6 +129,26 @@ class Sequence {
   }
 
  private:
+  PictureRequest request() const {
+    constexpr unsigned kSamples = 4, kReferenceSamples = 64;
+    PictureRequest request;
+    request.width = options_.width;
+    request.height = options_.height;
+    request.samples = options_.samples.value_or(isReference() ? kReferenceSamples : kSamples);
+    request.seed = options_.seed;
+    request.bounces = options_.bounces;
+    request.error = options_.error;
+    return request;
+  }
+  /// The path tracer knows physics alone.
+  void tellWhatIsLeftOut() const {
+    for (const LightTerm& term : termsOf(lightModelOf(view_->scene, view_->medium)))
+      if (term.on && !term.physical)
+        std::cerr << "reference: leaves out '" << term.name << "', which has no truth: it " << term.sentence
+                  << '\n';
+  }
+  bool isReference() const { return row_.name == kReferenceMethod; }
+
   const RenderOptions& options_;
   const MethodRow& row_;
   Scene scene_;

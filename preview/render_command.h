@@ -23,13 +23,15 @@ struct RenderOptions {
   std::string grid;   // empty: chosen
   int width = 960;
   int height = 540;
-  unsigned samples = 4;
+  std::optional<unsigned> samples;   // none: 4, and 64 for the reference
   std::optional<double> stepVoxels;  // overrides the scene's
   std::string stats;                 // empty: none
   unsigned seed = 0;
   std::optional<double> exposureEv;  // none: 0 with a scene, chosen from the picture without
   bool aov = false;
   Filter filter = Filter::hardware;
+  std::optional<int> bounces;  // scatterings after the first, for methods that count them; none: all
+  double error = 0.0;          // above 0: relative RMSE that the picture's noise may have
   std::optional<std::pair<int, int>> frames;  // both ends included
 };
 

@@ -1,0 +1,189 @@
+// Pictures by the path tracer. Depends on preview/truth, preview/method.h, base and TBB.
+#include "preview/truth/reference_method.h"
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+
+#include "base/progress.h"
+#include "preview/truth/camera.h"
+#include "preview/truth/estimate.h"
+#include "preview/truth/path_tracer.h"
+#include "scene/light_model.h"
+
+namespace nephele {
+namespace {
+
+using namespace truth;
+using Clock = std::chrono::steady_clock;
+
+glm::vec3 vectorOf(const Rgb& rgb) { return glm::vec3(glm::dvec3(rgb[0], rgb[1], rgb[2])); }
+
+TrackedMedium trackedMedium(const BrickVolume& bricks, const Medium& medium) {
+  TrackedMedium tracked;
+  tracked.bricks = &bricks;
+  tracked.sigmaS = vectorOf(medium.sigmaS);
+  tracked.sigmaT = tracked.sigmaS + vectorOf(medium.sigmaA);
+  tracked.sigmaMax = std::max({tracked.sigmaT.x, tracked.sigmaT.y, tracked.sigmaT.z});
+  tracked.grey = tracked.sigmaT == glm::vec3(tracked.sigmaMax);
+  const glm::dmat3 worldFromIndex(bricks.worldFromIndex);
+  tracked.worldFromIndex = glm::mat3(worldFromIndex);
+  tracked.indexFromWorld = glm::mat3(glm::inverse(worldFromIndex));
+  if (tracked.sigmaMax > 0.0f) tracked.grid = buildControlGrid(bricks, double{tracked.sigmaMax});
+  return tracked;
+}
+
+PhaseFunction phaseOf(const ViewedScene& view) {
+  const PhaseLobes lobes = lightModelOf(view.scene, view.medium).phase;
+  return {static_cast<float>(lobes.first), static_cast<float>(lobes.second), static_cast<float>(lobes.share)};
+}
+
+/// The corner of the brick grid.
+glm::dvec3 worldCorner(const BrickVolume& bricks) {
+  return glm::dvec3(bricks.worldFromIndex * glm::dvec4(glm::dvec3(bricks.brickMin * kBrickCells), 1.0));
+}
+
+/// One picture being sampled.
+class Sampling {
+ public:
+  Sampling(const BrickVolume& bricks, const ViewedScene& view, const PictureRequest& request)
+      : request_(request),
+        medium_(trackedMedium(bricks, view.medium)),
+        lights_(view, medium_, worldCorner(bricks)),
+        tracer_(medium_, phaseOf(view), lights_, {request.bounces.value_or(-1), true}),
+        rays_(view.camera, bricks, request.width, request.height),
+        estimate_(request.width, request.height) {}
+
+  /// Adds blocks [first, last) of `size` samples to every pixel.
+  void add(unsigned first, unsigned last, unsigned size) {
+    constexpr int kTile = 16;  // neighbours share what lies in the caches
+    const tbb::blocked_range2d<int> all(0, request_.height, kTile, 0, request_.width, kTile);
+    Progress progress("tracing",
+                      static_cast<uint64_t>(request_.width) * static_cast<uint64_t>(request_.height),
+                      request_.quiet);
+    tbb::parallel_for(all, [&](const tbb::blocked_range2d<int>& tile) {
+      uint64_t looks = 0;
+      for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
+        for (int x = tile.cols().begin(); x != tile.cols().end(); ++x)
+          for (unsigned block = first; block != last; ++block) addBlock(x, y, block, size, looks);
+      looks_ += looks;
+      progress.advance(tile.rows().size() * tile.cols().size());
+    });
+  }
+
+  const Estimate& estimate() const { return estimate_; }
+  uint64_t looks() const { return looks_; }
+
+ private:
+  void addBlock(int x, int y, unsigned block, unsigned size, uint64_t& looks) {
+    const size_t pixel =
+        static_cast<size_t>(y) * static_cast<size_t>(request_.width) + static_cast<size_t>(x);
+    const uint64_t seed = seedOf(request_.seed, pixel, block);
+    BlockMean mean;
+    const float share = 1.0f / static_cast<float>(size);
+    for (unsigned i = 0; i < size; ++i) {
+      const double atX = x + double{stratified(0, i, seed)}, atY = y + double{stratified(1, i, seed)};
+      const auto entering = rays_.at(atX, atY);
+      if (!entering) continue;
+      Random random(seedOf(seed, i));
+      const PathSample sample = tracer_.trace(entering->ray, entering->along, {i, seed}, random, looks);
+      for (int c = 0; c < 3; ++c) {
+        mean.radiance[c] += share * sample.radiance[c];
+        mean.transmittance[c] -= share * (1.0f - sample.transmittance[c]);
+      }
+      mean.taken += share * sample.taken;
+      mean.takenDistance += share * sample.taken * (static_cast<float>(entering->before) + sample.distance);
+    }
+    estimate_.add(pixel, block, mean);
+  }
+
+  const PictureRequest& request_;
+  TrackedMedium medium_;
+  LightSources lights_;
+  PathTracer tracer_;
+  CameraRays rays_;
+  Estimate estimate_;
+  std::atomic<uint64_t> looks_{0};
+};
+
+/// Samples of a block: as many as leave `kBlocks` of them, since points of one block are spread evenly and
+/// blocks tell the noise.
+unsigned blockSize(unsigned samples) {
+  constexpr unsigned kBlocks = 4, kLargest = 64;
+  return std::clamp(std::bit_floor(samples / kBlocks), 1u, kLargest);
+}
+
+/// Samples until the picture's noise is at most `error`. Returns how many blocks that took.
+unsigned sampleUntil(Sampling& sampling, double error, unsigned size) {
+  constexpr unsigned kFirst = 8;    // fewer tell the noise badly
+  constexpr double kAtOnce = 2.0;   // grow by at most this factor between two looks at the noise
+  constexpr double kMargin = 1.02;  // rather a little too far than once more
+  unsigned blocks = 0;
+  for (unsigned until = kFirst;;) {
+    sampling.add(blocks, until, size);
+    blocks = until;
+    const double reached = sampling.estimate().relativeError(blocks);
+    if (reached <= error) return blocks;
+    const double ratio = std::min(kAtOnce, kMargin * reached * reached / (error * error));
+    until = blocks + 2 * static_cast<unsigned>(std::ceil(0.5 * (ratio - 1.0) * blocks));
+  }
+}
+
+class ReferenceMethod : public Method {
+ public:
+  ReferenceMethod() { renderer = "CPU"; }
+
+  void setVolume(const BrickVolume& bricks) override { bricks_ = &bricks; }
+
+  Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
+    NEPHELE_CHECK_EQ(bricks_ != nullptr, true);
+    const auto start = Clock::now();
+    unsigned blocks = 2;
+    Picture picture;
+    const bool medium = view.medium.sigmaS != Rgb{} || view.medium.sigmaA != Rgb{};
+    if (bricks_->empty() || !medium) {
+      Estimate estimate(request.width, request.height);
+      for (size_t pixel = 0; pixel < static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+           ++pixel)
+        for (unsigned block = 0; block < blocks; ++block) estimate.add(pixel, block, {});
+      picture = estimate.picture(blocks);
+      cost = {};
+    } else {
+      Sampling sampling(*bricks_, view, request);
+      constexpr unsigned kBlockTowardsError = 16;
+      if (request.error > 0.0) {
+        blocks = sampleUntil(sampling, request.error, kBlockTowardsError);
+      } else {
+        const unsigned size = blockSize(request.samples);
+        blocks = (request.samples + size - 1) / size;
+        sampling.add(0, blocks, size);
+      }
+      picture = sampling.estimate().picture(blocks);
+      cost.densitySamplesPerPixel =
+          static_cast<double>(sampling.looks()) / (static_cast<double>(request.width) * request.height);
+      cost.relativeError = sampling.estimate().relativeError(blocks);
+      cost.gpuBytes = 0;
+    }
+    cost.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return picture;
+  }
+
+ private:
+  const BrickVolume* bricks_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> makeReferenceMethod(const MethodOptions&) {
+  return std::make_unique<ReferenceMethod>();
+}
+
+}  // namespace nephele
