@@ -221,7 +221,7 @@ void writePicture(const std::string& path, Picture picture, const ViewedScene& v
 
 double chooseExposure(const Picture& picture) {
   constexpr float kMostlyMedium = 0.5f;
-  constexpr double kBrightShare = 0.95, kShownAt = 0.6, kMostEv = 16.0;
+  constexpr double kBrightShare = 0.95, kShownAt = 0.88, kMostEv = 16.0;
   std::vector<double> radiances;
   for (size_t i = 0; i < picture.planes[3].size(); ++i) {
     const double alpha = double{picture.planes[3][i]};

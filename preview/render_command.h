@@ -55,7 +55,7 @@ void writePicture(const std::string& path, Picture picture, const ViewedScene& v
                   bool aov);
 
 /// The exposure at which the medium's bright parts (95th percentile of radiance over alpha, where alpha
-/// exceeds ½) are shown at 0.6 of white before the transfer function, within ±16 EV; 0 where nothing of it is
+/// exceeds ½) are shown at 0.88 of white before the transfer function, within ±16 EV; 0 where nothing of it is
 /// lit.
 double chooseExposure(const Picture& picture);
 

@@ -13,7 +13,7 @@ namespace nephele {
 /// wrote, else Z.
 glm::dvec3 upOf(const BrickVolume& bricks);
 
-/// Looks at the centre of the medium's support from the right front and slightly above, as
+/// Looks at the centre of the medium's support from the right front and slightly below, as
 /// near as its eight corners stay in the picture with a little margin. An empty volume is a box of two
 /// voxels.
 Camera frameCamera(const BrickVolume& bricks, const glm::dvec3& up, double fov, double aspect);

@@ -22,27 +22,30 @@ glm::dvec3 toLight(double azimuth, double elevation) {
 const std::vector<Preset>& table() {
   static const std::vector<Preset> rows{
       {"noon",
-       "high sun from the left, deep blue sky",
-       {toLight(-75.0, 48.0), {5.2, 4.9, 4.4}},
-       {{0.26, 0.19, 0.13}, {0.62, 0.74, 0.88}, {0.09, 0.21, 0.50}, 0.1, 1.0}},
+       "high sun behind the left shoulder of the cloud, deep blue sky",
+       {toLight(-52.0, 44.0), {17.0, 16.0, 14.4}},
+       {{0.22, 0.18, 0.14}, {0.86, 1.00, 1.15}, {0.08, 0.25, 0.70}, 0.1, 1.0}},
       {"sunset",
        "low orange sun from the left, violet above",
-       {toLight(-68.0, 6.0), {6.0, 2.6, 0.9}},
-       {{0.10, 0.06, 0.05}, {0.85, 0.42, 0.20}, {0.10, 0.12, 0.30}, 0.2, 1.0}},
+       {toLight(-62.0, 5.0), {17.0, 8.0, 2.6}},
+       {{0.12, 0.07, 0.06}, {1.30, 0.62, 0.28}, {0.13, 0.14, 0.36}, 0.2, 1.0}},
       {"backlit",
        "sun behind the cloud: silver rims",
-       {toLight(-14.0, 24.0), {6.0, 5.5, 4.8}},
-       {{0.20, 0.15, 0.11}, {0.55, 0.64, 0.76}, {0.07, 0.16, 0.38}, 0.2, 1.0}},
+       {toLight(-10.0, 22.0), {17.0, 16.0, 14.4}},
+       {{0.18, 0.15, 0.12}, {0.62, 0.74, 0.88}, {0.06, 0.17, 0.44}, 0.2, 1.0}},
       {"moonlight",
-       "bluish moon behind the shoulder, night sky",
-       {toLight(-40.0, 38.0), {0.42, 0.50, 0.66}},
-       {{0.004, 0.004, 0.006}, {0.030, 0.040, 0.065}, {0.004, 0.007, 0.018}, 0.1, 1.0}},
+       "bluish moon behind the cloud, night sky",
+       {toLight(-40.0, 38.0), {2.3, 2.8, 3.6}},
+       {{0.005, 0.006, 0.009}, {0.045, 0.065, 0.115}, {0.006, 0.011, 0.030}, 0.1, 1.0}},
       {"overcast",
-       "a white sky without a shadow",
-       {toLight(-60.0, 60.0), {0.5, 0.5, 0.5}},
-       {{0.16, 0.14, 0.12}, {0.62, 0.64, 0.67}, {0.75, 0.78, 0.83}, 1.0, 1.0}}};
+       "a white sky that hides the sun",
+       {toLight(-60.0, 60.0), {4.0, 4.0, 4.0}},
+       {{0.24, 0.22, 0.20}, {0.78, 0.84, 0.93}, {0.92, 1.00, 1.12}, 0.9, 1.0}}};
   return rows;
 }
+
+// Of the scene that a file opens in.
+constexpr int kDefaultOctaves = 5;
 
 }  // namespace
 
@@ -66,6 +69,7 @@ void applyPreset(const Preset& preset, Scene& scene) {
 Scene defaultScene() {
   Scene scene;
   scene.look = Look::report;
+  scene.octaves = {kDefaultOctaves, 0.45, 0.57, 0.5};  // brighter in the shade than the keys' defaults
   applyPreset(presets().front(), scene);
   return scene;
 }

@@ -42,8 +42,8 @@ using Switch = std::optional<bool>;
 struct SilverLining {
   Switch on;
   double inS = 0.8;     // asymmetry of the lobe towards the light, in [0, 1)
-  double outS = 0.3;    // of the lobe away from it, in [0, 1)
-  double blend = 0.35;  // share of the second lobe, in [0, 1]
+  double outS = 0.4;    // of the lobe away from it, in [0, 1)
+  double blend = 0.45;  // share of the second lobe, in [0, 1]
 };
 
 /// Ambient out-scattering: darkens in-scattering where the medium is dense, less low in the cloud. Not
