@@ -87,13 +87,14 @@ Interval boundBasis(Basis basis, const NoiseOctave& octave, const Box& box) {
   }
   // As in boundNoise: room for float places and operations.
   constexpr double kPlaceRoom = 1e-5;
-  const glm::dvec3 half = box.halfSize() / octave.cellSize;
+  const Box within = withinMoved(box, octave.offset);
+  const glm::dvec3 half = within.halfSize() / octave.cellSize;
   const double across = std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z);
   const Interval all{-1.0 - kPlaceRoom, 1.0 + kPlaceRoom};
   const double slope = basis == Basis::worley ? 2.0 : kValueSlope;
   // A distance to the nearest of points changes by at most the way gone; the basis takes twice that.
   if (!(slope * across < 2.0)) return all;
-  const glm::dvec3 p = box.centre() - octave.offset;
+  const glm::dvec3 p = within.centre();
   const double centre =
       basis == Basis::worley
           ? 1.0 - 2.0 * double(worleyAt(worleyOf(octave), p))

@@ -26,6 +26,10 @@ Box roundedOutwards(const Box& box) {
   return {box.low - kFourUlps * glm::abs(box.low), box.high + kFourUlps * glm::abs(box.high)};
 }
 
+Box withinMoved(const Box& box, const glm::dvec3& offset) {
+  return roundedOutwards({box.low - offset, box.high - offset});
+}
+
 LatticePoints::LatticePoints(const Lattice& lattice) : origin(lattice.origin) {
   float along[kBlockEdge];
   for (int n = 0; n < kBlockEdge; ++n) along[n] = float(n * lattice.spacing);

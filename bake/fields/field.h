@@ -49,6 +49,9 @@ Box grown(const Box& box, double by);
 /// Grown by four units in the last place of its coordinates: holds the points of a lattice whose corners it
 /// was made from, and what fields make of them, however those doubles are rounded.
 Box roundedOutwards(const Box& box);
+/// The box in a pattern that has moved by `offset`, rounded outwards: holds whatever a point less the offset
+/// rounds to.
+Box withinMoved(const Box& box, const glm::dvec3& offset);
 
 /// Immutable once built; every method may be called from any number of threads.
 class Field {

@@ -146,11 +146,12 @@ class WorleyField final : public Field {
   Interval bounds(const Box& box) const override {
     // √3 bounds both distances; each changes by at most the way gone, their difference by twice that.
     constexpr double kLargest = 1.7321, kPlaceRoom = 1e-5;
-    const glm::dvec3 half = box.halfSize() / noise_.cellSize;
+    const Box within = withinMoved(box, offset_);
+    const glm::dvec3 half = within.halfSize() / noise_.cellSize;
     const double slope = noise_.output == WorleyOutput::f2MinusF1 ? 2.0 : 1.0;
     const double way = slope * std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z) + kPlaceRoom;
     if (!(way < kLargest)) return {0.0, kLargest};
-    const double centre = double(worleyAt(noise_, box.centre() - offset_));
+    const double centre = double(worleyAt(noise_, within.centre()));
     return clamped({centre - way, centre + way}, 0.0, kLargest);
   }
   Box support() const override { return Box{}; }

@@ -9,8 +9,8 @@
 namespace nephele {
 namespace {
 
-float noiseAt(const NoiseOctave& octave, const glm::dvec3& place) {
-  const glm::dvec3 p = place - octave.offset;
+/// `p` is a place in the pattern.
+float noiseAt(const NoiseOctave& octave, const glm::dvec3& p) {
   const CellPlace x = cellPlace(p.x, octave.cellSize), y = cellPlace(p.y, octave.cellSize),
                   z = cellPlace(p.z, octave.cellSize);
   return noiseInCell(octave, {x.cell, y.cell, z.cell}, {x.fraction, y.fraction, z.fraction});
@@ -31,7 +31,8 @@ double bandLimit(double cellVoxels) { return std::clamp((cellVoxels - 2.0) / 2.0
 
 Interval boundNoise(const NoiseOctave& octave, const Box& box) {
   const double weight = std::abs(double(octave.weight));
-  const glm::dvec3 half = box.halfSize() / octave.cellSize;
+  const Box within = withinMoved(box, octave.offset);
+  const glm::dvec3 half = within.halfSize() / octave.cellSize;
   const double cornerSlope = octave.turn.evolves ? kTurningCornerSlope : kPerlinCornerSlope;
   const double reach = std::min(kPerlinSlope * std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z),
                                 cornerSlope * std::max({half.x, half.y, half.z}));
@@ -40,7 +41,7 @@ Interval boundNoise(const NoiseOctave& octave, const Box& box) {
   constexpr double kPlaceRoom = 1e-5;
   const Interval all{-weight * (1.0 + kPlaceRoom), weight * (1.0 + kPlaceRoom)};
   if (!(reach < 2.0)) return all;
-  const double centre = double(octave.weight) * double(noiseAt(octave, box.centre()));
+  const double centre = double(octave.weight) * double(noiseAt(octave, within.centre()));
   const double room = weight * (reach + kPlaceRoom);
   return both(all, {centre - room, centre + room});
 }

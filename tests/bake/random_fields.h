@@ -104,6 +104,8 @@ class FieldDrawer {
   double number(const Parameter& parameter, double fallback, int axis) {
     const Range& range = parameter.range;
     const bool length = parameter.unit.starts_with("world units");
+    if (length && range.low < 0.0 && std::isfinite(range.low))  // a speed; one in ten far too fast
+      return oneIn(2) ? fallback : between(-1.0, 1.0) * (oneIn(10) ? range.high : world_.size);
     if (std::isfinite(range.low) && std::isfinite(range.high))
       return oneIn(2) ? fallback : between(range.low, range.high);
     if (std::isfinite(range.low)) {
@@ -112,7 +114,6 @@ class FieldDrawer {
     }
     if (parameter.unit == "world units")
       return world_.centre[axis] + world_.size * (fallback + between(-0.5, 0.5));
-    if (length) return oneIn(2) ? 0.0 : world_.size * between(-1.0, 1.0);
     return oneIn(6) ? 0.0 : oneIn(3) ? fallback : between(-2.0, 2.0);
   }
 
