@@ -74,15 +74,27 @@ struct Totals {
   PictureCost cost;
 };
 
-void writeStats(const std::string& path, const Totals& totals, const Method& method) {
+std::vector<std::string> unphysicalTerms(const LightModel& light) {
+  std::vector<std::string> names;
+  for (const LightTerm& term : termsOf(light))
+    if (term.on && !term.physical) names.emplace_back(term.name);
+  return names;
+}
+
+void writeStats(const std::string& path, const Totals& totals, const Method& method,
+                const ViewedScene& view) {
   const double frames = totals.frames;
+  const LightModel light = lightModelOf(view.scene, view.medium);
   const nlohmann::ordered_json stats{{"seconds_load", totals.secondsLoad / frames},
                                      {"ms_per_frame", totals.cost.milliseconds / frames},
                                      {"samples_per_pixel", totals.cost.densitySamplesPerPixel / frames},
                                      {"gpu_bytes", totals.cost.gpuBytes},
                                      {"gl_renderer", method.renderer},
                                      {"seconds_driver", method.secondsDriver},
-                                     {"seconds_shaders", method.secondsShaders}};
+                                     {"seconds_shaders", method.secondsShaders},
+                                     {"look", nameOf(light.look)},
+                                     {"not_physical", unphysicalTerms(light)},
+                                     {"white_furnace", furnaceValue(light.octaveCount, light.a, light.b)}};
   const std::string text = stats.dump(2) + "\n";
   writeWhole(path, [&](const std::string& temporary) {
     std::ofstream out(temporary, std::ios::binary);
@@ -125,7 +137,7 @@ class Sequence {
   }
 
   void finish() const {
-    if (!options_.stats.empty()) writeStats(options_.stats, totals_, *method_);
+    if (!options_.stats.empty()) writeStats(options_.stats, totals_, *method_, *view_);
   }
 
  private:

@@ -24,7 +24,7 @@ const std::vector<Preset>& table() {
       {"noon",
        "high sun behind the left shoulder of the cloud, deep blue sky",
        {toLight(-52.0, 44.0), {17.0, 16.0, 14.4}},
-       {{0.22, 0.18, 0.14}, {0.86, 1.00, 1.15}, {0.08, 0.25, 0.70}, 0.1, 1.0}},
+       {{0.26, 0.19, 0.13}, {0.86, 1.00, 1.15}, {0.06, 0.22, 0.68}, 0.1, 1.0}},
       {"sunset",
        "low orange sun from the left, violet above",
        {toLight(-62.0, 5.0), {17.0, 8.0, 2.6}},
