@@ -260,12 +260,23 @@ BackdropColours readBackdrop(const yaml::Node& node, Diagnostics& out) {
   return colours;
 }
 
+// Between samples of the light cache: a voxel at least, at most one of its blocks; so far too it is marched
+// before.
+constexpr Range kCacheVoxels{1.0, 16.0, false, false}, kNear{0.0, 16.0, false, false};
+
 MarchSettings readMarch(const yaml::Node& node, Diagnostics& out) {
   yaml::MapReader reader(node, "'march'", out);
   MarchSettings march;
   march.stepVoxels = reader.number("step", march.stepVoxels, kStepVoxels);
   march.shadowStepVoxels = reader.number("shadow_step", march.shadowStepVoxels, kStepVoxels);
   march.shadowGrowth = reader.number("shadow_growth", march.shadowGrowth, {1.0, 2.0, false, false});
+  march.adaptive = reader.boolean("adaptive", march.adaptive);
+  march.lightCache = reader.boolean("light_cache", march.lightCache);
+  march.cacheVoxels = reader.number("cache", march.cacheVoxels, kCacheVoxels);
+  march.skyCacheVoxels = reader.number("sky_cache", march.skyCacheVoxels, kCacheVoxels);
+  march.cacheNearVoxels = reader.number("cache_near", march.cacheNearVoxels, kNear);
+  march.giveUp = reader.number("give_up", march.giveUp, {0.0, 0.1, true, false});
+  march.cacheNearSteps = static_cast<int>(reader.integer("cache_near_steps", march.cacheNearSteps, kNear));
   reader.finish();
   return march;
 }

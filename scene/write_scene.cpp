@@ -139,9 +139,20 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
             listOf(scene.backdrop->bottom) + ", top: " + listOf(scene.backdrop->top) + " }\n";
   text += "look: " + nameOf(scene.look) + "\n";
   text +=
-      "# Steps in voxels; each step towards a light is shadow_growth times the one before.\nmarch: { step: " +
+      "# Steps in voxels; each step towards a light is shadow_growth times the one before. adaptive: longer "
+      "where the medium "
+      "is\n# thin. light_cache: light from samples `cache` and `sky_cache` voxels apart, after cache_near "
+      "voxels marched in "
+      "so many steps.\nmarch: { step: " +
       shortest(scene.march.stepVoxels) + ", shadow_step: " + shortest(scene.march.shadowStepVoxels) +
-      ", shadow_growth: " + shortest(scene.march.shadowGrowth) + " }\n";
+      ", shadow_growth: " + shortest(scene.march.shadowGrowth) +
+      ", adaptive: " + (scene.march.adaptive ? "true" : "false") +
+      ", light_cache: " + (scene.march.lightCache ? "true" : "false") +
+      ", cache: " + shortest(scene.march.cacheVoxels) +
+      ", sky_cache: " + shortest(scene.march.skyCacheVoxels) +
+      ", cache_near: " + shortest(scene.march.cacheNearVoxels) +
+      ", cache_near_steps: " + std::to_string(scene.march.cacheNearSteps) +
+      ", give_up: " + shortest(scene.march.giveUp) + " }\n";
   return text;
 }
 

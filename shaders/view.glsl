@@ -21,7 +21,7 @@ float brickExit(vec3 position, vec3 direction) {
 bool holdsDensity(vec3 position) {
   ivec3 brick = ivec3(floor(position / kBrickEdge));
   if (any(lessThan(brick, ivec3(0))) || any(greaterThanEqual(brick, params.brickCount.xyz))) return false;
-  return brickSlot(brick) != 0u;
+  return !wordIsEmpty(brickWord(brick));
 }
 
 // x: value. y: 1 where there is one.

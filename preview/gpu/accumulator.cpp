@@ -48,7 +48,7 @@ void Accumulator::moveOn(const PixelRectangle& drawn) {
   ++sample_;
 }
 
-bool Accumulator::advance(const MarchPass& pass, const BrickAtlas& atlas, const Film& film, double seconds,
+bool Accumulator::advance(MarchPass& pass, const BrickAtlas& atlas, const Film& film, double seconds,
                           unsigned until) {
   const auto start = Clock::now();
   while (!done() && sample_ < until) {

@@ -17,7 +17,7 @@ class Accumulator {
 
   /// Draws and waits for the GPU until `seconds` are over (at least one piece), `until` samples are whole or
   /// all is done. Returns false once all is done.
-  bool advance(const MarchPass& pass, const BrickAtlas& atlas, const Film& film, double seconds,
+  bool advance(MarchPass& pass, const BrickAtlas& atlas, const Film& film, double seconds,
                unsigned until = std::numeric_limits<unsigned>::max());
 
   bool done() const { return sample_ >= samples_; }

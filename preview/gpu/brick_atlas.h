@@ -1,36 +1,50 @@
 // The brick arrays on the GPU: an atlas of 9³ bricks and an index that says where each brick lies in it.
-// Depends on volume/bricks.h and gpu/gl.h.
+// Depends on volume/bricks.h, volume/brick_layout.h and gpu/gl.h.
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "preview/filter.h"
 #include "preview/gpu/gl.h"
+#include "volume/brick_layout.h"
 #include "volume/bricks.h"
 
 namespace nephele {
 
-/// Two 3-D textures. The atlas (R32F) holds slot s at bricks (s mod nx, s/nx mod ny, s/(nx ny)); the index
-/// (R32UI) holds 0 for no density, else bit 24 and the brick's place, 8 bits an axis.
+/// Makes a 2-D texture (R32UI) of words, one after the other in rows of a power of two, and adds its bytes.
+/// An index by 3-D textures would end where they do. Throws InputError where the driver's 2-D textures do not
+/// hold them.
+GlTexture makeIndexTexture(std::span<const uint32_t> words, uint64_t& gpuBytes);
+
+/// Sets how a 3-D texture is read between texels; beyond its faces it goes on as at them.
+void setVolumeFilter(GLuint texture, Filter filter);
+
+/// The volume laid out (volume/brick_layout.h) in two textures: a 3-D atlas (R32F) and the index's words.
 class BrickAtlas {
  public:
-  /// Uploads all bricks. Throws InputError where the grid is longer than the driver's 3-D textures allow, and
-  /// WorldError where the GPU's memory does not suffice. An empty volume makes textures of one texel.
+  /// Uploads all bricks, which must outlive it. Throws InputError where the grid has more bricks than the
+  /// driver's textures hold, and WorldError where the GPU's memory does not suffice. An empty volume makes
+  /// textures of one brick and one word.
   BrickAtlas(const BrickVolume& bricks, Filter filter);
 
   /// Binds the atlas to texture unit 0 and the index to unit 1.
   void bind() const;
-  glm::ivec3 sizeTexels() const { return sizeTexels_; }
+  Filter filter() const { return filter_; }
   uint64_t gpuBytes() const { return gpuBytes_; }
+  const BrickLayout& layout() const { return layout_; }
+  /// Differs from that of every other atlas of this process.
+  uint64_t serial() const { return serial_; }
 
  private:
-  void uploadAtlas(const BrickVolume& bricks, const glm::ivec3& places);
-  void uploadIndex(const BrickVolume& bricks, const glm::ivec3& places);
+  void uploadAtlas();
 
+  Filter filter_;
+  BrickLayout layout_;
   GlTexture atlas_;
   GlTexture index_;
-  glm::ivec3 sizeTexels_{1};
   uint64_t gpuBytes_ = 0;
+  uint64_t serial_;
 };
 
 }  // namespace nephele

@@ -17,9 +17,6 @@ using glm::vec4;
 
 static_assert(kMostLights == size_t{shared::kMaxLights});
 
-// Below this the rest of a ray cannot be seen in 8 bits, nor in a comparison at 1e-3.
-constexpr float kSmallestTransmittance = 1e-4f;
-
 vec4 row(const dvec3& v, double w = 0.0) { return vec4(glm::vec3(v), static_cast<float>(w)); }
 dvec3 vectorOf(const Rgb& rgb) { return dvec3(rgb[0], rgb[1], rgb[2]); }
 
@@ -98,6 +95,36 @@ void setLights(shared::MarchParameters& p, const std::vector<Light>& lights, con
   }
 }
 
+/// How steps follow the optical depth, and what the light cache holds.
+void setWalk(shared::MarchParameters& p, const MarchSettings& march, const BrickVolume& bricks) {
+  const dvec3 cells(bricks.brickCount * kBrickCells);
+  // A float's last place at the far end of the index, a few times over, and never less than can matter.
+  constexpr double kLeastMargin = 1e-4, kFloatStep = 1e-6;
+  const double margin = std::max(kLeastMargin, kFloatStep * std::max({cells.x, cells.y, cells.z}));
+  // What a step that is longer than the setting's may take of the view, and what that may vary by.
+  constexpr double kStepDepth = 0.35, kStepVariation = 0.05;
+  p.walk = vec4(glm::vec3(static_cast<float>(margin), static_cast<float>(bricks.maximum),
+                          march.adaptive ? static_cast<float>(kStepDepth) : 0.0f),
+                static_cast<float>(kStepVariation));
+  // The chord costs nothing to begin with.
+  if (!march.lightCache || bricks.empty() || p.chordRadii.w > 0.0f) return;
+  const auto samples = [](double cell) {
+    return 1 + std::max(1, static_cast<int>(std::lround(kBlockBricks * kBrickCells / cell)));
+  };
+  // Between samples the cache mixes e^(−κ column). With κ below σ_t places just inside a cloud come out too
+  // dark, at σ_t too bright; in between they are right on the mean.
+  constexpr float kMixedBy = 0.8f;
+  p.cache = vec4(1.0f, kMixedBy * std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z)),
+                 static_cast<float>(march.cacheNearVoxels), static_cast<float>(march.cacheNearSteps));
+  constexpr float kGrowth = 1.2f, kSkyGrowth = 1.5f;
+  p.cacheSteps = vec4(static_cast<float>(0.5 * march.cacheVoxels), kGrowth,
+                      static_cast<float>(0.5 * march.skyCacheVoxels), kSkyGrowth);
+  // A picture's small suns fall between the few directions that are kept.
+  const int kind = static_cast<int>(p.skyUp.w);
+  const bool sky = kind == shared::kSkyConstant || kind == shared::kSkyRamp;
+  p.cacheShape = glm::ivec4(samples(march.cacheVoxels), sky ? samples(march.skyCacheVoxels) : 0, 0, 0);
+}
+
 }  // namespace
 
 dvec3 viewDirection(const Camera& camera, int width, int height, double x, double y) {
@@ -126,7 +153,7 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   if (bricks.empty()) p.boxMin = p.boxMax = vec4(0.0f);  // a box that no ray meets
   const Scene& scene = view.scene;
   p.sigmaS.w = static_cast<float>(scene.march.stepVoxels);
-  p.environment.w = kSmallestTransmittance;
+  p.environment.w = static_cast<float>(scene.march.giveUp);
   setLightParameters(p, view, bricks);
   // Products with steps and coefficients must stay floats, and columns below the march's own infinity.
   constexpr double kLargestDensity = 1e15;
@@ -135,6 +162,7 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   NEPHELE_CHECK_GT(scene.march.shadowStepVoxels, 0.0);
   NEPHELE_CHECK_LE(1.0, scene.march.shadowGrowth);  // less would never arrive
   p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, 0.0), 0.0);
+  setWalk(p, scene.march, bricks);
   p.counts.w = randomStart ? 1 : 0;
   p.brickCount = glm::ivec4(bricks.brickCount, static_cast<int>(seed));
   return p;

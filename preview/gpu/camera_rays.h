@@ -4,6 +4,7 @@
 
 #include "preview/viewed_scene.h"
 #include "shaders/shared/leaves.h"
+#include "volume/brick_layout.h"
 #include "volume/bricks.h"
 
 namespace nephele {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <optional>
 
 #include "base/progress.h"
@@ -55,6 +56,8 @@ class MarchMethod : public Method {
     const Film film(request.width, request.height);
     pass_->setParameters(marchParameters(view, *bricks_, request.width, request.height, request.seed, true));
     pass_->setEnvironment(view.environmentMap);
+    pass_->prepare(*atlas_, std::numeric_limits<double>::infinity());
+    const double cacheDensities = pass_->takeCacheDensities();
     Accumulator accumulator(request.width, request.height, request.samples, request.seed);
     {
       Progress progress("rendering", accumulator.pixelsTotal(), request.quiet);
@@ -68,7 +71,7 @@ class MarchMethod : public Method {
     refuseCutRays(result);
     cost.milliseconds = secondsSince(start) * 1e3;
     cost.densitySamplesPerPixel =
-        result.densitySamples / (static_cast<double>(request.width) * request.height);
+        (result.densitySamples + cacheDensities) / (static_cast<double>(request.width) * request.height);
     cost.gpuBytes = atlas_->gpuBytes() + film.gpuBytes() + pass_->gpuBytes();
     return std::move(result.picture);
   }

@@ -1,55 +1,112 @@
 // Binding and drawing the march. Depends on what its header names.
 #include "preview/gpu/march_pass.h"
 
+#include <limits>
+
+#include "base/blue_noise.h"
+
 namespace nephele {
 namespace {
 
-// Locations and bindings as shaders/march.frag declares them.
-constexpr GLuint kParameterBinding = 0;
-constexpr GLint kSubPixelLocation = 0, kSampleNumberLocation = 1, kTexelSizeLocation = 2, kSliceLocation = 3;
+// Locations and bindings as shaders/march.frag and shaders/bricks.glsl declare them.
+constexpr GLuint kParameterBinding = 0, kJitterUnit = 4;
+constexpr GLint kSubPixelLocation = 0, kSampleNumberLocation = 1, kSliceLocation = 3;
 constexpr int kTriangleCorners = 3;
 
-std::vector<std::string> definesFor(Filter filter, MarchWrites writes) {
+/// What these parameters do not need is left out, since some drivers run the branches that no pixel takes.
+std::vector<std::string> definesFor(Filter filter, MarchWrites writes, const shared::MarchParameters& p) {
+  const int sky = p.skyUp.w == 0.0f ? 0 : p.cacheShape.y > 0 ? 1 : 2;
+  const auto flag = [](const char* name, bool on) { return std::string(name) + (on ? " true" : " false"); };
+  bool points = false;
+  for (int i = 0; i < p.counts.x; ++i)
+    points = points || static_cast<int>(p.lights[i].direction.w) == shared::kLightPoint;
   return {filter == Filter::exact ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
-          "NPH_VIEW " + std::to_string(static_cast<int>(writes))};
+          "NPH_VIEW " + std::to_string(static_cast<int>(writes)),
+          flag("NPH_CACHED", p.cache.x > 0.0f),
+          flag("NPH_NEAR", p.cache.w > 0.0f),
+          flag("NPH_POINTS", points),
+          flag("NPH_POWDER", p.powder.x > 0.0f),
+          flag("NPH_LOBES", p.phase.z > 0.0f),
+          "NPH_SKY " + std::to_string(sky)};
 }
+
+GlTexture makeJitterTile() {
+  GlTexture texture = makeTexture(GL_TEXTURE_2D);
+  const std::vector<float> tile = blueNoiseTile(shared::kJitterTile);
+  glTextureStorage2D(texture.name(), 1, GL_R32F, shared::kJitterTile, shared::kJitterTile);
+  glTextureSubImage2D(texture.name(), 0, 0, 0, shared::kJitterTile, shared::kJitterTile, GL_RED, GL_FLOAT,
+                      tile.data());
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  return texture;
+}
+
+bool wantsCache(const shared::MarchParameters& p) { return p.cache.x > 0.0f || p.cacheShape.y > 0; }
 
 }  // namespace
 
 MarchPass::MarchPass(Filter filter, const std::vector<TextChange>& changes, MarchWrites writes)
     : filter_(filter),
-      program_(buildProgram("screen.vert", "march.frag", definesFor(filter, writes), changes)),
-      parameters_(makeBuffer()),
+      writes_(writes),
+      changes_(changes),
+      buffer_(makeBuffer()),
+      jitter_(makeJitterTile()),
       noVertices_(makeVertexArray()) {
-  glNamedBufferStorage(parameters_.name(), sizeof(shared::MarchParameters), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  glNamedBufferStorage(buffer_.name(), sizeof(shared::MarchParameters), nullptr, GL_DYNAMIC_STORAGE_BIT);
   checkGl("making the parameter buffer");
+  program();
+}
+
+const GlProgram& MarchPass::program() {
+  const std::vector<std::string> defines = definesFor(filter_, writes_, parameters_);
+  GlProgram& built = programs_[defines];
+  if (built.name() == 0) built = buildProgram("screen.vert", "march.frag", defines, changes_);
+  return built;
 }
 
 void MarchPass::setParameters(const shared::MarchParameters& parameters) {
-  glNamedBufferSubData(parameters_.name(), 0, sizeof parameters, &parameters);
+  parameters_ = parameters;
+  preparedFor_ = 0;
 }
 
-void MarchPass::setSlice(int axis, float place) {
-  glProgramUniform2f(program_.name(), kSliceLocation, static_cast<float>(axis), place);
+bool MarchPass::prepare(const BrickAtlas& atlas, double seconds) {
+  const BrickLayout& layout = atlas.layout();
+  parameters_.blockCount = glm::ivec4(layout.blockCount, 0);
+  parameters_.cacheShape.z = layout.blockPlaces.z * parameters_.cacheShape.x;
+  glNamedBufferSubData(buffer_.name(), 0, sizeof parameters_, &parameters_);
+  glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, buffer_.name());
+  preparedFor_ = atlas.serial();
+  if (writes_ != MarchWrites::radiance || !wantsCache(parameters_)) return true;
+  if (!cache_) cache_.emplace(filter_, changes_);
+  sky_.bind();
+  return cache_->update(atlas, parameters_, seconds);
 }
+
+void MarchPass::setSlice(int axis, float place) { slice_ = glm::vec2(static_cast<float>(axis), place); }
 
 void MarchPass::draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPixel, unsigned number,
-                     const PixelRectangle& where) const {
+                     const PixelRectangle& where) {
+  if (preparedFor_ != atlas.serial()) prepare(atlas, std::numeric_limits<double>::infinity());
   film.bindAsTarget();
   atlas.bind();
   sky_.bind();
-  glUseProgram(program_.name());
+  if (cache_) cache_->bind();
+  glBindTextureUnit(kJitterUnit, jitter_.name());
+  glUseProgram(program().name());
   glBindVertexArray(noVertices_.name());
-  glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, parameters_.name());
+  glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, buffer_.name());
   glUniform2f(kSubPixelLocation, subPixel.x, subPixel.y);
   glUniform1ui(kSampleNumberLocation, number);
-  const glm::vec3 texel = 1.0f / glm::vec3(atlas.sizeTexels());
-  if (filter_ == Filter::hardware) glUniform3f(kTexelSizeLocation, texel.x, texel.y, texel.z);
+  if (writes_ == MarchWrites::slice) glUniform2f(kSliceLocation, slice_.x, slice_.y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(where.x, where.y, where.width, where.height);
   glDrawArrays(GL_TRIANGLES, 0, kTriangleCorners);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
+}
+
+uint64_t MarchPass::gpuBytes() const {
+  constexpr uint64_t kTileBytes = uint64_t{shared::kJitterTile} * shared::kJitterTile * sizeof(float);
+  return sizeof(shared::MarchParameters) + kTileBytes + sky_.gpuBytes() + (cache_ ? cache_->gpuBytes() : 0);
 }
 
 }  // namespace nephele

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "preview/gpu/brick_atlas.h"
 #include "preview/gpu/film.h"
+#include "preview/gpu/light_cache.h"
 #include "preview/gpu/shader.h"
 #include "preview/gpu/sky_textures.h"
 #include "shaders/shared/leaves.h"
@@ -22,7 +25,7 @@ struct PixelRectangle {
 /// What a pass writes: the lit picture, or one of the looks inside of shaders/view.glsl.
 enum class MarchWrites { radiance, slice, skipped };
 
-/// The compiled march with its parameters.
+/// The compiled march with its parameters and, where they ask for it, its light cache.
 class MarchPass {
  public:
   /// Compiles for one filter; `changes` are for tests. Throws WorldError where the driver refuses.
@@ -38,20 +41,36 @@ class MarchPass {
   /// is new.
   void setEnvironment(const std::shared_ptr<const EnvironmentMap>& map) { sky_.set(map); }
   void bindEnvironment() const { sky_.bind(); }
+  /// Fills what the light cache lacks for these parameters and this volume, for about `seconds`; returns
+  /// whether it lacks nothing more. Until then draws take what the cache held before.
+  bool prepare(const BrickAtlas& atlas, double seconds);
   /// Adds one sample of each pixel in `where` to the film, seen through picture position (x, y) + subPixel;
-  /// `number` is the sample's number. Does not wait for the GPU.
+  /// `number` is the sample's number. Prepares wholly where prepare was not called for this volume. Does not
+  /// wait for the GPU.
   void draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPixel, unsigned number,
-            const PixelRectangle& where) const;
+            const PixelRectangle& where);
 
   Filter filter() const { return filter_; }
-  uint64_t gpuBytes() const { return sizeof(shared::MarchParameters) + sky_.gpuBytes(); }
+  uint64_t gpuBytes() const;
+  /// Densities read to fill the light cache since the last call.
+  double takeCacheDensities() { return cache_ ? cache_->takeDensitiesRead() : 0.0; }
 
  private:
+  const GlProgram& program();
+
   Filter filter_;
-  GlProgram program_;
-  GlBuffer parameters_;
+  MarchWrites writes_;
+  glm::vec2 slice_{0.0f};
+  std::vector<TextChange> changes_;
+  std::map<std::vector<std::string>, GlProgram>
+      programs_;  // by what each leaves out; built when first needed
+  GlBuffer buffer_;
+  GlTexture jitter_;
   SkyTextures sky_;
   GlVertexArray noVertices_;
+  shared::MarchParameters parameters_{};
+  std::optional<LightCache> cache_;
+  uint64_t preparedFor_ = 0;  // the atlas's serial
 };
 
 }  // namespace nephele

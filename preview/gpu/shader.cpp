@@ -81,6 +81,23 @@ GlShader compile(GLenum kind, const std::string& name, const std::vector<std::st
   throw WorldError("the driver refuses shaders/" + name + ":\n" + nameFilesInLog(log.c_str(), source.files));
 }
 
+GlProgram link(std::initializer_list<GLuint> shaders, const std::string& what) {
+  GlProgram program(glCreateProgram());
+  for (const GLuint shader : shaders) glAttachShader(program.name(), shader);
+  glLinkProgram(program.name());
+  for (const GLuint shader : shaders) glDetachShader(program.name(), shader);
+  GLint done = GL_FALSE, length = 0;
+  glGetProgramiv(program.name(), GL_LINK_STATUS, &done);
+  if (done != GL_TRUE) {
+    glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
+    glGetProgramInfoLog(program.name(), length, nullptr, log.data());
+    throw WorldError("the driver cannot link " + what + ":\n" + log.c_str());
+  }
+  checkGl("building " + what);
+  return program;
+}
+
 }  // namespace
 
 ShaderText assembleShader(const std::string& name, const std::vector<std::string>& defines,
@@ -113,22 +130,13 @@ GlProgram buildProgram(const std::string& vertexName, const std::string& fragmen
                        const std::vector<std::string>& defines, const std::vector<TextChange>& changes) {
   const GlShader vertex = compile(GL_VERTEX_SHADER, vertexName, defines, changes);
   const GlShader fragment = compile(GL_FRAGMENT_SHADER, fragmentName, defines, changes);
-  GlProgram program(glCreateProgram());
-  glAttachShader(program.name(), vertex.name());
-  glAttachShader(program.name(), fragment.name());
-  glLinkProgram(program.name());
-  glDetachShader(program.name(), vertex.name());
-  glDetachShader(program.name(), fragment.name());
-  GLint done = GL_FALSE, length = 0;
-  glGetProgramiv(program.name(), GL_LINK_STATUS, &done);
-  if (done != GL_TRUE) {
-    glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
-    std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
-    glGetProgramInfoLog(program.name(), length, nullptr, log.data());
-    throw WorldError("the driver cannot link " + vertexName + " with " + fragmentName + ":\n" + log.c_str());
-  }
-  checkGl("building " + fragmentName);
-  return program;
+  return link({vertex.name(), fragment.name()}, vertexName + " with " + fragmentName);
+}
+
+GlProgram buildComputeProgram(const std::string& name, const std::vector<std::string>& defines,
+                              const std::vector<TextChange>& changes) {
+  const GlShader shader = compile(GL_COMPUTE_SHADER, name, defines, changes);
+  return link({shader.name()}, name);
 }
 
 }  // namespace nephele

@@ -33,6 +33,8 @@ ShaderText assembleShader(const std::string& name, const std::vector<std::string
 std::string nameFilesInLog(const std::string& log, const std::vector<std::string>& files);
 
 /// Compiles and links. Throws WorldError with the driver's log.
+GlProgram buildComputeProgram(const std::string& name, const std::vector<std::string>& defines = {},
+                              const std::vector<TextChange>& changes = {});
 GlProgram buildProgram(const std::string& vertexName, const std::string& fragmentName,
                        const std::vector<std::string>& defines = {},
                        const std::vector<TextChange>& changes = {});

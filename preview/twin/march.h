@@ -1,5 +1,5 @@
-// The march's shared text as C++: a struct over any source of brick densities. Depends on shaders/shared
-// alone. Compile what includes it with -Wconversion -Wdouble-promotion.
+// The march's shared text as C++: a struct over any source of bricks and cached light. Depends on
+// shaders/shared alone. Compile what includes it with -Wconversion -Wdouble-promotion.
 #pragma once
 
 #include "shaders/shared/leaves.h"
@@ -13,23 +13,51 @@ struct SkyArrays {
   const vec4* cells = nullptr;
 };
 
-/// `Bricks` has `uint slot(ivec3 brick) const` (0: no density) and `float density(uint slot, vec3 position)
-/// const` (position in [0, 8] voxels from the brick's corner). Thread-safe to copy and use where Bricks is.
-template <class Bricks>
+/// `Source` has
+///   uint word(ivec3 brick) const                      as volume/brick_layout.h says
+///   float density(uint word, vec3 position) const     position in [0, 8] voxels from the brick's corner
+///   uint block(ivec3 block) const, float column(vec3 texel) const, vec4 sky(int part, vec3 texel) const
+///                                                     asked where parameters.cache or cacheShape say so
+/// Thread-safe to copy and use where Source is.
+template <class Source>
 struct March {
   MarchParameters params;
-  const Bricks* bricks;
+  const Source* bricks;
   SkyArrays skyArrays{};
 
-  uint brickSlot(ivec3 brick) const { return bricks->slot(brick); }
-  float brickDensity(uint slot, vec3 position) const { return bricks->density(slot, position); }
+  uint brickWord(ivec3 brick) const { return bricks->word(brick); }
+  float brickDensity(uint word, vec3 position) const { return bricks->density(word, position); }
+  uint blockWord(ivec3 block) const { return bricks->block(block); }
+  float cachedColumn(vec3 texel) const { return bricks->column(texel); }
+  vec4 cachedSky(int part, vec3 texel) const { return bricks->sky(part, texel); }
   vec3 environmentTexel(ivec2 texel) const { return skyArrays.texels[texel.y * params.skySize.x + texel.x]; }
   vec4 environmentCell(int cell) const { return skyArrays.cells[cell]; }
 
+#define NPH_CACHED (params.cache.x > 0.0f)
+#define NPH_NEAR (params.cache.w > 0.0f)
+#define NPH_POINTS true
+#define NPH_POWDER true
+#define NPH_LOBES true
+#define NPH_SKY (skyKind() == kSkyNone ? 0 : params.cacheShape.y > 0 ? 1 : 2)
 #include "shaders/shared/environment.glsl"
 #include "shaders/shared/light.glsl"
+#include "shaders/shared/light_cache.glsl"
+#include "shaders/shared/light_cache_fill.glsl"
 #include "shaders/shared/march.glsl"
 #include "shaders/shared/walk.glsl"
+#undef NPH_CACHED
+#undef NPH_NEAR
+#undef NPH_POINTS
+#undef NPH_POWDER
+#undef NPH_LOBES
+#undef NPH_SKY
+};
+
+/// A source without a light cache, for marches whose parameters ask for none.
+struct NoCache {
+  uint block(ivec3) const { return 0u; }
+  float column(vec3) const { return 0.0f; }
+  vec4 sky(int, vec3) const { return vec4(0.0f); }
 };
 
 }  // namespace nephele::shared

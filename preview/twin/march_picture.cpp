@@ -1,38 +1,106 @@
-// The brick arrays as the march's source of densities, read with explicit mixes in the order of the exact GPU
-// filter. Depends on shaders/shared, the brick arrays and TBB.
+// The brick arrays as the march's source of densities and cached light, read with explicit mixes in the order
+// of the exact GPU filter. Depends on shaders/shared, the brick arrays and TBB.
 #include "preview/twin/march_picture.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+
+#include "base/blue_noise.h"
+#include "volume/brick_layout.h"
 
 namespace nephele {
 namespace {
 
 using namespace shared;
 
-struct ArrayBricks {
-  const BrickVolume* volume;
+size_t flat(const ivec3& size, const ivec3& p) {
+  return (static_cast<size_t>(p.z) * static_cast<size_t>(size.y) + static_cast<size_t>(p.y)) *
+             static_cast<size_t>(size.x) +
+         static_cast<size_t>(p.x);
+}
 
-  uint slot(ivec3 brick) const {
-    const ivec3 count = volume->brickCount;
-    const size_t row =
-        static_cast<size_t>(brick.z) * static_cast<size_t>(count.y) + static_cast<size_t>(brick.y);
-    return volume->index[row * static_cast<size_t>(count.x) + static_cast<size_t>(brick.x)];
+/// Trilinear between `cell` and its neighbours, by f; `at` gives a sample.
+template <class At>
+auto mixed(const At& at, const ivec3& t, const vec3& f) {
+  const auto y0 = mix(mix(at(t), at(t + ivec3(1, 0, 0)), f.x),
+                      mix(at(t + ivec3(0, 1, 0)), at(t + ivec3(1, 1, 0)), f.x), f.y);
+  const auto y1 = mix(mix(at(t + ivec3(0, 0, 1)), at(t + ivec3(1, 0, 1)), f.x),
+                      mix(at(t + ivec3(0, 1, 1)), at(t + ivec3(1, 1, 1)), f.x), f.y);
+  return mix(y0, y1, f.z);
+}
+
+/// A 3-D texture's texels.
+template <class Texel>
+struct Volume {
+  ivec3 size{1};
+  std::vector<Texel> texels;
+
+  void make(const ivec3& of) {
+    size = of;
+    texels.assign(flat(of, ivec3(0, 0, of.z)), Texel(0.0f));
   }
-
-  float density(uint slotPlusOne, vec3 position) const {
-    // A position a hair below 0 rounds to the far face of the brick before: hence the upper bound.
-    const ivec3 cell = min(ivec3(floor(position)), ivec3(kBrickCells - 1));
-    const vec3 f = position - vec3(cell);
-    const size_t first = static_cast<size_t>((cell.z * kBrickSamples + cell.y) * kBrickSamples + cell.x);
-    const float* s = volume->samples.data() + (slotPlusOne - 1) * static_cast<size_t>(kBrickVolume) + first;
-    constexpr int dy = kBrickSamples;
-    constexpr int dz = kBrickSamples * kBrickSamples;
-    const float y0 = mix(mix(s[0], s[1], f.x), mix(s[dy], s[dy + 1], f.x), f.y);
-    const float y1 = mix(mix(s[dz], s[dz + 1], f.x), mix(s[dz + dy], s[dz + dy + 1], f.x), f.y);
-    return mix(y0, y1, f.z);
+  Texel& at(const ivec3& p) { return texels[flat(size, p)]; }
+  Texel read(const vec3& texel) const {
+    const ivec3 cell = min(ivec3(texel), size - 2);
+    return mixed([this](const ivec3& p) { return texels[flat(size, p)]; }, cell, texel - vec3(cell));
   }
 };
+
+struct ArraySource {
+  const BrickLayout* layout;
+  Volume<float> columns;
+  Volume<vec4> skies;
+
+  uint word(ivec3 brick) const { return layout->words[flat(layout->brickCount, brick)]; }
+  uint block(ivec3 block) const { return layout->blockWords[flat(layout->blockCount, block)]; }
+  float column(vec3 texel) const { return columns.read(texel); }
+  vec4 sky(int part, vec3 texel) const {
+    return skies.read(texel + vec3(0.0f, 0.0f, static_cast<float>(part * (skies.size.z / 2))));
+  }
+
+  float density(uint word, vec3 position) const {
+    // A position a hair outside the brick reads on along its outermost cell.
+    const ivec3 cell = clamp(ivec3(floor(position)), ivec3(0), ivec3(kBrickCells - 1));
+    const float* brick = layout->bricks[flat(layout->places, brick_word::place(word))];
+    const auto at = [brick](const ivec3& p) { return brick[flat(ivec3(kBrickSamples), p)]; };
+    return max(0.0f, mixed(at, cell, position - vec3(cell)));
+  }
+};
+
+/// What shaders/light_cache.comp fills for the exact filter.
+void fillCache(ArraySource& source, const March<ArraySource>& march) {
+  const BrickLayout& layout = *source.layout;
+  const MarchParameters& p = march.params;
+  const bool columns = p.cache.x > 0.0f && p.counts.x > 0;
+  const bool sky = p.cacheShape.y > 0;
+  if (columns) source.columns.make(layout.blockPlaces * p.cacheShape.x * ivec3(1, 1, p.counts.x));
+  if (sky) source.skies.make(layout.blockPlaces * p.cacheShape.y * ivec3(1, 1, 2));
+  tbb::parallel_for(size_t{0}, layout.blocks.size(), [&](size_t number) {
+    March<ArraySource> mine = march;
+    const ivec3 block = layout.blocks[number];
+    const int nx = layout.blockPlaces.x, ny = layout.blockPlaces.y, n = static_cast<int>(number);
+    const ivec3 place(n % nx, n / nx % ny, n / (nx * ny));
+    const auto each = [&](int samples, const auto& fill) {
+      for (int i = 0; i < samples * samples * samples; ++i) {
+        const ivec3 local(i % samples, i / samples % samples, i / (samples * samples));
+        fill(place * samples + local, mine.cachePosition(block, local, samples));
+      }
+    };
+    vec2 cost(0.0f);
+    for (int light = 0; columns && light < p.counts.x; ++light)
+      each(p.cacheShape.x, [&](const ivec3& texel, const vec3& position) {
+        source.columns.at(texel + ivec3(0, 0, light * p.cacheShape.z)) =
+            mine.columnToCache(light, position, cost);
+      });
+    if (!sky) return;
+    each(p.cacheShape.y, [&](const ivec3& texel, const vec3& position) {
+      vec4 parts[2];
+      mine.skyToCache(position, parts[0], parts[1], cost);
+      for (int part = 0; part < 2; ++part)
+        source.skies.at(texel + ivec3(0, 0, part * source.skies.size.z / 2)) = parts[part];
+    });
+  });
+}
 
 }  // namespace
 
@@ -40,15 +108,23 @@ std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const MarchParame
                                     int height, glm::vec2 subPixel, unsigned number, const SkyArrays& sky) {
   std::vector<TwinPixel> pixels(static_cast<size_t>(width) * static_cast<size_t>(height));
   if (bricks.empty() && parameters.skyForward.w <= 0.0f) return pixels;
-  const ArrayBricks source{&bricks};
+  const BrickLayout layout = layOut(bricks);
+  ArraySource source{&layout, {}, {}};
+  March<ArraySource> whole{parameters, &source, sky};
+  whole.params.blockCount = ivec4(layout.blockCount, 0);
+  whole.params.cacheShape.z = layout.blockPlaces.z * parameters.cacheShape.x;
+  fillCache(source, whole);
+  const std::vector<float> jitter = blueNoiseTile(kJitterTile);
   tbb::parallel_for(tbb::blocked_range<int>(0, height), [&](const tbb::blocked_range<int>& rows) {
-    March<ArrayBricks> march{parameters, &source, sky};
+    March<ArraySource> march = whole;
     for (int y = rows.begin(); y != rows.end(); ++y) {
       for (int x = 0; x < width; ++x) {
         const vec2 at = vec2(static_cast<float>(x), static_cast<float>(y)) + subPixel;
         const uint random = randomState(static_cast<uint>(x), static_cast<uint>(y), number,
                                         static_cast<uint>(parameters.brickCount.w));
-        const auto result = march.marchRay(at, random, number);
+        const float start = march.stepStart(
+            jitter[static_cast<size_t>(y % kJitterTile * kJitterTile + x % kJitterTile)], number);
+        const auto result = march.marchRay(at, start, random, number);
         TwinPixel& pixel =
             pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
         pixel = {result.radiance + march.environmentBehind(at, result.opticalDepth),

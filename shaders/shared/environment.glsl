@@ -4,12 +4,6 @@
 //   vec3 environmentTexel(ivec2 texel);   of the lat-long picture, row 0 at the top
 //   vec4 environmentCell(int cell);       of its table (scene/environment_map.h)
 
-// Kinds of environment, in params.skyUp.w.
-NPH_CONST int kSkyNone = 0;
-NPH_CONST int kSkyConstant = 1;
-NPH_CONST int kSkyRamp = 2;
-NPH_CONST int kSkyMap = 3;
-
 // As in scene/environment_map.h: cells around, and up; the upper 15 bits of an integer choose one of all.
 NPH_CONST int kSkyCellsAround = 256;
 NPH_CONST int kSkyCellsUp = 128;

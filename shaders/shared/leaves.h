@@ -1,5 +1,6 @@
-// The leaves of the light's shared text as C++ (phase, random, ray and box, chord, powder, step integral) and the parameter
-// struct, in namespace nephele::shared. Depends on GLM alone; the march itself is preview/twin/march.h.
+// The leaves of the light's shared text as C++ (phase, random, ray and box, chord, powder, step integral) and
+// the parameter struct, in namespace nephele::shared. Depends on GLM alone; the march itself is
+// preview/twin/march.h.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +9,8 @@
 
 namespace nephele::shared {
 
+// Later texts use earlier ones.
+// clang-format off
 #include "shaders/shared/parameters.glsl"
 #include "shaders/shared/phase.glsl"
 #include "shaders/shared/random.glsl"
@@ -16,15 +19,16 @@ namespace nephele::shared {
 #include "shaders/shared/chord.glsl"
 #include "shaders/shared/powder.glsl"
 #include "shaders/shared/step_integral.glsl"
+// clang-format on
 
 // std140 puts every member on a multiple of 16 bytes; so must the C++ compiler, since the struct goes up by
 // memcpy.
 inline constexpr size_t kRowBytes = 16;
-inline constexpr size_t kRowsBeforeLights = 35;
+inline constexpr size_t kRowsBeforeLights = 40;
 inline constexpr size_t kRowsPerLight = 3;
 static_assert(sizeof(vec4) == kRowBytes && sizeof(ivec4) == kRowBytes);
 static_assert(sizeof(LightParameters) == kRowsPerLight * kRowBytes);
-static_assert(offsetof(MarchParameters, counts) == 33 * kRowBytes);
+static_assert(offsetof(MarchParameters, counts) == 38 * kRowBytes);
 static_assert(offsetof(MarchParameters, lights) == kRowsBeforeLights * kRowBytes);
 static_assert(sizeof(MarchParameters) == (kRowsBeforeLights + kRowsPerLight * kMaxLights) * kRowBytes);
 

@@ -1,5 +1,7 @@
 // What reaches a point of the medium from lights and sky, and how much of it is scattered along a ray [MODEL.md, section 2].
-// Included as march.glsl is, after walk.glsl and environment.glsl.
+// Included as march.glsl is, after walk.glsl and environment.glsl. Some drivers run the branches that no pixel takes: what the
+// parameters do not ask for is left out by NPH_POINTS, NPH_POWDER and NPH_LOBES (point lights, powder, a second lobe), which
+// are true wherever it is not known.
 
 // Σ over orders of b^m · phase(c^m g) · e^(−a^m σ_t column), to be multiplied by σ_s and the light's irradiance.
 NPH_FN vec3 scatteredByOrders(vec3 toLight, vec3 ray, float column) {
@@ -8,7 +10,8 @@ NPH_FN vec3 scatteredByOrders(vec3 toLight, vec3 ray, float column) {
   float scattering = 1.0f;
   vec3 lobes = vec3(params.phase);
   for (int m = 0; m <= params.counts.y; ++m) {
-    sum += scattering * phaseFunction(toLight, ray, lobes) * exp(-(extinction * column) * vec3(params.sigmaT));
+    float phase = NPH_LOBES ? phaseFunction(toLight, ray, lobes) : phaseHenyeyGreenstein(toLight, ray, lobes.x);
+    sum += scattering * phase * exp(-(extinction * column) * vec3(params.sigmaT));
     extinction *= params.octaves.x;
     scattering *= params.octaves.y;
     lobes.x *= params.octaves.z;
@@ -39,7 +42,7 @@ NPH_FN Lighting lightingFrom(int i, vec3 position) {
   l.toLightIndex = vec3(params.lights[i].directionIndex);
   l.reach = 3.0e38f;
   l.irradiance = vec3(params.lights[i].power);
-  if (int(params.lights[i].direction.w) == kLightPoint) {
+  if (NPH_POINTS && int(params.lights[i].direction.w) == kLightPoint) {
     vec3 apart = vec3(params.lights[i].directionIndex) - position;
     vec3 apartWorld = apart.x * vec3(params.worldFromIndexX) + apart.y * vec3(params.worldFromIndexY) +
                       apart.z * vec3(params.worldFromIndexZ);
@@ -89,36 +92,43 @@ NPH_FN float columnTowards(vec3 position, vec3 direction, float reach, float eno
   if (params.chordRadii.w > 0.0f)
     return params.chordCentre.w *
            ellipsoidChord(position, direction, vec3(params.chordCentre), vec3(params.chordRadii), reach);
-  return columnDensity(position, direction, reach, enough, start, cost);
+  return columnDensity(position, direction, reach, enough, vec2(params.shadow), start, cost);
 }
 
 // What powder leaves of the light that a place of density `rho` scatters.
 NPH_FN float powderAt(vec3 position, float rho) {
-  if (params.powder.x <= 0.0f) return 1.0f;
+  if (!NPH_POWDER || params.powder.x <= 0.0f) return 1.0f;
   float height = dot(position, vec3(params.height)) + params.height.w;
   return powderFactor(params.powder.x, min(rho * params.powder.y, 1.0f), height);
 }
 
 // Source function at a point: Σ over lights and the sky, per unit density, before σ_s. `place` counts the points lit along
-// the ray, `number` the picture's samples.
+// the ray, `number` the picture's samples. What the light cache holds is taken from there: NPH_CACHED is true where it has the
+// lights' columns, NPH_NEAR where the way to it is marched; NPH_SKY is 0 where there is no sky, 1 where the cache has it, 2 where it is marched for.
 NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
                          NPH_INOUT(vec2) cost) {
   vec3 sum = vec3(0.0f);
-  bool sky = skyKind() != kSkyNone;
-  int count = params.counts.x + (sky ? 1 : 0);
+  int count = params.counts.x + (NPH_SKY == 2 ? 1 : 0);
   int done = 0;
   for (int i = 0; i < count; ++i) {
     float start = params.counts.w != 0 ? nextUniform(random) : 0.5f;
+    bool sky = NPH_SKY == 2 && i == params.counts.x;
     Lighting l;
-    if (i < params.counts.x) {
-      l = lightingFrom(i, position);
-    } else {
+    if (sky) {
       l = lightingFromSky(ray, place, number);
+    } else {
+      l = lightingFrom(i, position);
     }
-    float column = columnTowards(position, l.toLightIndex, l.reach, enough, start, cost);
+    float column = 0.0f;
+    if (NPH_CACHED && !sky) {
+      column = lightColumn(i, position, l.toLightIndex, l.reach, start, cost);
+    } else {
+      column = columnTowards(position, l.toLightIndex, l.reach, enough, start, cost);
+    }
     sum += l.irradiance * scatteredByOrders(l.toLight, ray, column);
     done += 1;
   }
   if (done < count) cost.y = 1.0f;
+  if (NPH_SKY == 1) sum += skyScattering(position, ray);
   return sum;
 }

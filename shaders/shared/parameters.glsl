@@ -5,6 +5,12 @@ NPH_CONST int kMaxLights = 8;
 NPH_CONST int kLightSun = 0;
 NPH_CONST int kLightPoint = 1;
 
+// Kinds of environment, in params.skyUp.w.
+NPH_CONST int kSkyNone = 0;
+NPH_CONST int kSkyConstant = 1;
+NPH_CONST int kSkyRamp = 2;
+NPH_CONST int kSkyMap = 3;
+
 struct LightParameters {
   vec4 direction;       // sun: unit vector to the light, world axes. w: kind
   vec4 directionIndex;  // sun: the same in voxels per world unit. Point: its place in index space
@@ -47,6 +53,13 @@ struct MarchParameters {
   vec4 skyRight;     // axes of a map
   vec4 skyForward;   // w: 1 where the picture holds the environment behind the medium, else 0
   ivec4 skySize;     // x, y: texels of a map
+  vec4 walk;         // x: way into the next brick, voxels, that rounding may take. y: the volume's maximum. z, w: optical
+                     // depth of a step, of its variation over the brick, below which steps grow; z = 0: fixed steps
+  vec4 cache;        // x: 1 where columns come from the light cache. y: what one stands for there, density · world units.
+                     // z, w: way marched towards a light before the cache is asked, voxels, and its steps
+  vec4 cacheSteps;   // first step, voxels, and growth of those that fill the cache: x, y for columns, z, w for the sky
+  ivec4 cacheShape;  // x: samples along a block's edge, columns. y: the same, sky; 0: no sky there. z: texels along z a light
+  ivec4 blockCount;  // blocks of the light cache along each axis
   ivec4 counts;      // x: lights. y: octaves beyond the first. w: 1 where steps start at random, 0 midway
   ivec4 brickCount;  // bricks along each axis. w: seed
   LightParameters lights[kMaxLights];

@@ -20,3 +20,6 @@ NPH_FN float nextUniform(NPH_INOUT(uint) state) {
   state = hashBits(state + 0x9e3779b9u);
   return float(state >> 8u) * (1.0f / 16777216.0f);
 }
+
+// Edge of the tile of blue noise that starts steps apart from those of neighbouring pixels (base/blue_noise.h).
+NPH_CONST int kJitterTile = 64;

@@ -63,7 +63,8 @@ TEST(Scene, ReadsEveryKey) {
       "background: { bottom: 0.25, top: [0.1, 0.2, 0.3] }\n"
       "phase: { silver_lining: { in_s: 0.9, out_s: 0.2, blend: 0.1 } }\npowder: { on: auto, o_sa: 2 }\n"
       "light_transmittance: chord\nemission: { on: false, scale: 3, temperature_scale: 2000, grid: heat }\n"
-      "look: report\nmarch: { step: 0.25, shadow_step: 2 }\n");
+      "look: report\nmarch: { step: 0.25, shadow_step: 2, adaptive: false, cache: 3, cache_near_steps: 2 "
+      "}\n");
   EXPECT_EQ(scene.camera->target, glm::dvec3(4, 5, 6));
   EXPECT_TRUE(scene.cameraUpGiven);
   EXPECT_NEAR(scene.camera->fov, std::numbers::pi / 2.0, 1e-15);
@@ -88,6 +89,10 @@ TEST(Scene, ReadsEveryKey) {
   EXPECT_EQ(scene.look, Look::report);
   EXPECT_EQ(scene.march.stepVoxels, 0.25);
   EXPECT_EQ(scene.march.shadowStepVoxels, 2.0);
+  EXPECT_FALSE(scene.march.adaptive);
+  EXPECT_TRUE(scene.march.lightCache);
+  EXPECT_EQ(scene.march.cacheVoxels, 3.0);
+  EXPECT_EQ(scene.march.cacheNearSteps, 2);
 }
 
 TEST(Scene, EnvironmentsOfEachKind) {
@@ -187,6 +192,12 @@ void expectEqual(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.march.stepVoxels, b.march.stepVoxels);
   EXPECT_EQ(a.march.shadowStepVoxels, b.march.shadowStepVoxels);
   EXPECT_EQ(a.march.shadowGrowth, b.march.shadowGrowth);
+  EXPECT_EQ(a.march.adaptive, b.march.adaptive);
+  EXPECT_EQ(a.march.lightCache, b.march.lightCache);
+  EXPECT_EQ(a.march.cacheVoxels, b.march.cacheVoxels);
+  EXPECT_EQ(a.march.skyCacheVoxels, b.march.skyCacheVoxels);
+  EXPECT_EQ(a.march.cacheNearVoxels, b.march.cacheNearVoxels);
+  EXPECT_EQ(a.march.cacheNearSteps, b.march.cacheNearSteps);
 }
 
 TEST(Scene, WrittenAndReadIsTheSame) {
@@ -202,7 +213,8 @@ TEST(Scene, WrittenAndReadIsTheSame) {
         "octaves: { count: 2, a: 0.3 }\n"
         "lights:\n  - sun: { to_light: [1, 2, 3], irradiance: [0.1, 0.2, 0.3] }\n"
         "  - sun: { to_light: [1e-200, 0, 3e-200] }\n  - point: { position: [1, 2, 3], intensity: 0.1 }\n"
-        "environment: { constant: 0.7, show: true }\nbackground: { top: 0.1 }\nmarch: { step: 0.3 }\n"}) {
+        "environment: { constant: 0.7, show: true }\nbackground: { top: 0.1 }\nmarch: { step: 0.3, adaptive: "
+        "false, light_cache: false, cache: 3.5, sky_cache: 8, cache_near: 2, cache_near_steps: 1 }\n"}) {
     const Scene scene = sceneOf(text);
     expectEqual(scene, sceneOf(writeScene(scene)));
   }

@@ -22,7 +22,7 @@ using testing_clouds::volumeOf;
 inline void needContext() { static EglContext context; }
 
 /// One sample of each pixel through its place `subPixel`.
-inline FilmPicture marchOnGpu(const MarchPass& pass, const BrickVolume& bricks, int width, int height,
+inline FilmPicture marchOnGpu(MarchPass& pass, const BrickVolume& bricks, int width, int height,
                               glm::vec2 subPixel, unsigned number) {
   const BrickAtlas atlas(bricks, pass.filter());
   const Film film(width, height);

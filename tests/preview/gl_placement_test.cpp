@@ -37,6 +37,7 @@ double worstError(const BrickVolume& bricks, const Camera& camera, double depthA
   view.camera = camera;
   view.scene.lights.clear();
   view.scene.march.stepVoxels = 0.1;
+  view.scene.march.adaptive = false;
   view.medium = chooseMedium(Scene{}, bricks).medium;
   const double sigmaT = view.medium.sigmaS[0] * depthAcross / 8.0;
   view.medium.sigmaS = {sigmaT, sigmaT, sigmaT};
@@ -139,7 +140,7 @@ TEST(LongRays, AreRightOrSaidToBeCutShort) {
   view.camera.position = glm::dvec3(31.5, 31.5, 400.0);
   view.camera.up = glm::dvec3(0.0, 1.0, 0.0);
   view.medium = {{0.01, 0.01, 0.01}, {0.0, 0.0, 0.0}, 0.0};
-  view.scene.march = {0.01, 0.01, 1.0};
+  view.scene.march = {0.01, 0.01, 1.0, false, false};
   MarchPass pass(Filter::exact);
   pass.setParameters(marchParameters(view, bricks, 1, 1, 0, false));
   const FilmPicture film = marchOnGpu(pass, bricks, 1, 1, {0.5f, 0.5f}, 0);

@@ -9,9 +9,11 @@
 namespace nephele::shared {
 namespace {
 
+constexpr int kMostWord = 31;  // a brick whose samples reach the volume's maximum
+
 /// Density 1 everywhere.
-struct FullBricks {
-  uint slot(ivec3) const { return 1u; }
+struct FullBricks : NoCache {
+  uint word(ivec3) const { return uint(kMostWord) << 27u; }
   float density(uint, vec3) const { return 1.0f; }
 };
 
@@ -31,6 +33,7 @@ MarchParameters parametersFor(float left, float right, float sigmaT) {
   p.octaves = vec4(0.5f, 0.5f, 0.5f, 0.0f);
   p.shadow = vec4(1.0f, 1.0f, 0.0f, 0.0f);
   p.environment = vec4(0.0f, 0.0f, 0.0f, 1e-6f);
+  p.walk = vec4(1e-4f, 1.0f, 0.0f, 0.0f);
   p.brickCount = ivec4(26, 26, 26, 0);
   return p;
 }
@@ -45,7 +48,7 @@ TEST(SharedMarch, HomogeneousSphereIsBeerLambertAlongTheChord) {
     const auto p = parametersFor(static_cast<float>(104.0 - half), static_cast<float>(104.0 + half),
                                  static_cast<float>(sigmaT));
     March<FullBricks> march{p, &bricks};
-    const auto result = march.marchRay(vec2(0.0f), 1u, 0u);
+    const auto result = march.marchRay(vec2(0.0f), 0.5f, 1u, 0u);
     worst =
         std::max(worst, std::abs(std::exp(-double{result.opticalDepth.x}) - std::exp(-sigmaT * 2.0 * half)));
   }
@@ -64,7 +67,7 @@ TEST(SharedMarch, SingleScatteringBackLitSlabHasItsClosedForm) {
   p.sigmaS.w = 0.05f;
   p.shadow = vec4(0.05f, 1.0f, 0.0f, 0.0f);
   March<FullBricks> march{p, &bricks};
-  const auto result = march.marchRay(vec2(0.0f), 1u, 0u);
+  const auto result = march.marchRay(vec2(0.0f), 0.5f, 1u, 0u);
   const double depth = 0.03 * 64.0;
   const double expected = depth * std::exp(-depth) / (4.0 * std::numbers::pi);
   // The step integral spreads each step's source over its attenuation: second order in a step of depth
@@ -79,9 +82,9 @@ TEST(SharedMarch, PointLightFallsWithTheSquareOfItsDistance) {
   p.counts.x = 1;
   p.lights[0] = {vec4(0.0f, 0.0f, 0.0f, float(kLightPoint)), vec4(100.5f, 124.0f, 104.0f, 0.0f), vec4(5.0f)};
   March<FullBricks> march{p, &bricks};
-  const double near = double{march.marchRay(vec2(0.0f), 1u, 0u).radiance.x};
+  const double near = double{march.marchRay(vec2(0.0f), 0.5f, 1u, 0u).radiance.x};
   march.params.lights[0].directionIndex.y = 144.0f;
-  const double far = double{march.marchRay(vec2(0.0f), 1u, 0u).radiance.x};
+  const double far = double{march.marchRay(vec2(0.0f), 0.5f, 1u, 0u).radiance.x};
   EXPECT_NEAR(near / far, 4.0, 2e-3);  // the two samples lie a quarter voxel off the point's foot
   EXPECT_NEAR(near, 1e-6 * 5.0 / 400.0 / (4.0 * std::numbers::pi), 1e-3 * near);
 }
@@ -91,13 +94,13 @@ TEST(SharedMarch, UniformSkyThroughThinMediumGivesOpticalDepth) {
   const FullBricks bricks;
   auto p = parametersFor(40.0f, 168.0f, 1e-7f);
   p.environment = vec4(1.0f, 1.0f, 1.0f, 1e-6f);
-  p.skyUp = vec4(0.0f, 0.0f, 1.0f, float(March<FullBricks>::kSkyConstant));
+  p.skyUp = vec4(0.0f, 0.0f, 1.0f, float(kSkyConstant));
   p.phase = vec4(0.7f, -0.4f, 0.3f, 0.0f);
   March<FullBricks> march{p, &bricks};
   constexpr int kRays = 4000;
   double mean = 0.0;
   for (uint i = 0; i < kRays; ++i)
-    mean += double{march.marchRay(vec2(0.0f), hashBits(i), i).radiance.x} / kRays;
+    mean += double{march.marchRay(vec2(0.0f), 0.5f, hashBits(i), i).radiance.x} / kRays;
   // 32 directions a ray of variance below 1: 4000 rays leave 3e-3 at one deviation.
   EXPECT_NEAR(mean / (128.0 * 1e-7), 1.0, 1.2e-2);
 }
@@ -125,7 +128,7 @@ TEST(SharedMarch, OctavesSumTheirOrders) {
       expected += depth * std::pow(b, m) * (1.0 - gm * gm) /
                   (4.0 * std::numbers::pi * std::pow(1.0 + gm * gm - 2.0 * gm * 0.6, 1.5));
     }
-    const double actual = double{March<FullBricks>{p, &bricks}.marchRay(vec2(0.0f), 1u, 0u).radiance.x};
+    const double actual = double{March<FullBricks>{p, &bricks}.marchRay(vec2(0.0f), 0.5f, 1u, 0u).radiance.x};
     EXPECT_NEAR(actual / expected, 1.0, 1e-4) << count;
   }
 }
@@ -147,7 +150,7 @@ TEST(SharedMarch, OctavesSeeTheLightThroughAPowerOfTheExtinction) {
     const double integral = m == 0 ? std::exp(-x) : (std::exp(-ax) - std::exp(-x)) / (x - ax);
     expected += std::pow(0.4, m) * x * integral / (4.0 * std::numbers::pi);
   }
-  const double actual = double{March<FullBricks>{p, &bricks}.marchRay(vec2(0.0f), 1u, 0u).radiance.x};
+  const double actual = double{March<FullBricks>{p, &bricks}.marchRay(vec2(0.0f), 0.5f, 1u, 0u).radiance.x};
   EXPECT_NEAR(actual / expected, 1.0, 2e-3);
 }
 
@@ -155,10 +158,10 @@ TEST(SharedMarch, PowderScalesWhatIsScatteredAndNothingElse) {
   const FullBricks bricks;
   auto p = thinSlab(vec3(0.0f, 0.0f, 1.0f));
   March<FullBricks> march{p, &bricks};
-  const auto without = march.marchRay(vec2(0.0f), 1u, 0u);
+  const auto without = march.marchRay(vec2(0.0f), 0.5f, 1u, 0u);
   march.params.powder = vec4(0.5f, 0.25f, 0.0f, 0.0f);  // density 1 of at most 4
   march.params.height = vec4(0.0f, 0.0f, 1.0f / 208.0f, 0.0f);
-  const auto with = march.marchRay(vec2(0.0f), 1u, 0u);
+  const auto with = march.marchRay(vec2(0.0f), 0.5f, 1u, 0u);
   EXPECT_NEAR(double{with.radiance.x / without.radiance.x}, double{powderFactor(0.5f, 0.25f, 0.5f)}, 1e-6);
   EXPECT_EQ(with.opticalDepth.x, without.opticalDepth.x);
 }
@@ -174,20 +177,20 @@ TEST(SharedMarch, ChordLightsAHomogeneousBallAsMarchingDoes) {
   p.lights[0] = {vec4(0.0f, 0.0f, 1.0f, float(kLightSun)), vec4(0.0f, 0.0f, 1.0f, 0.0f), vec4(1.0f)};
   p.shadow = vec4(0.05f, 1.0f, 0.0f, 0.0f);
   March<FullBricks> march{p, &bricks};
-  const double marched = double{march.marchRay(vec2(0.0f), 1u, 0u).radiance.x};
+  const double marched = double{march.marchRay(vec2(0.0f), 0.5f, 1u, 0u).radiance.x};
   march.params.chordCentre = vec4(104.0f, 104.0f, 104.0f, 1.0f);
   march.params.chordRadii = vec4(100.0f, 100.0f, 100.0f, 1.0f);
-  const auto chord = march.marchRay(vec2(0.0f), 1u, 0u);
+  const auto chord = march.marchRay(vec2(0.0f), 0.5f, 1u, 0u);
   EXPECT_NEAR(double{chord.radiance.x} / marched, 1.0, 1e-4);
   march.params.chordCentre.w = 0.5f;
-  EXPECT_NEAR(double{march.marchRay(vec2(0.0f), 1u, 0u).radiance.x} / marched, std::exp(0.5), 1e-3);
+  EXPECT_NEAR(double{march.marchRay(vec2(0.0f), 0.5f, 1u, 0u).radiance.x} / marched, std::exp(0.5), 1e-3);
 }
 
 TEST(SharedMarch, EnvironmentBehindIsSeenThroughTheMedium) {
   const FullBricks bricks;
   auto p = parametersFor(40.0f, 168.0f, 0.0f);
   p.environment = vec4(1.0f, 2.0f, 3.0f, 1e-6f);
-  p.skyUp = vec4(0.0f, 0.0f, 1.0f, float(March<FullBricks>::kSkyConstant));
+  p.skyUp = vec4(0.0f, 0.0f, 1.0f, float(kSkyConstant));
   March<FullBricks> march{p, &bricks};
   EXPECT_EQ(march.environmentBehind(vec2(0.0f), vec3(0.0f)).y, 0.0f) << "not asked for";
   march.params.skyForward.w = 1.0f;
@@ -198,7 +201,7 @@ TEST(SharedMarch, NoLightNoMediumNothing) {
   const FullBricks bricks;
   auto p = parametersFor(40.0f, 168.0f, 0.0f);
   March<FullBricks> march{p, &bricks};
-  const auto result = march.marchRay(vec2(0.0f), 1u, 0u);
+  const auto result = march.marchRay(vec2(0.0f), 0.5f, 1u, 0u);
   EXPECT_EQ(result.radiance.x, 0.0f);
   EXPECT_EQ(result.opticalDepth.x, 0.0f);
   EXPECT_EQ(result.depthWeight, 0.0f);

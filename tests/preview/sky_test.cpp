@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kPiDouble = std::numbers::pi;
 
-struct NoBricks {
-  uint slot(ivec3) const { return 0u; }
+struct NoBricks : NoCache {
+  uint word(ivec3) const { return 0u; }
   float density(uint, vec3) const { return 0.0f; }
 };
-struct FullBricks {
-  uint slot(ivec3) const { return 1u; }
+struct FullBricks : NoCache {
+  uint word(ivec3) const { return 0xf8000000u; }
   float density(uint, vec3) const { return 1.0f; }
 };
 
@@ -163,6 +163,7 @@ TEST(SharedSky, EveryKindLightsAThinMediumByItsMean) {
     p.phase = vec4(0.0f);
     p.shadow = vec4(4.0f, 2.0f, 0.0f, 0.0f);
     p.environment.w = 1e-6f;
+    p.walk = vec4(1e-4f, 1.0f, 0.0f, 0.0f);
     p.brickCount = ivec4(26, 26, 26, 0);
     March<FullBricks> march{p, &bricks};
     if (view.environmentMap)
@@ -170,7 +171,7 @@ TEST(SharedSky, EveryKindLightsAThinMediumByItsMean) {
     constexpr int kRays = 20000, kDirections = 100000;
     double mean = 0.0, expected = 0.0;
     for (uint i = 0; i < kRays; ++i)
-      mean += double{march.marchRay(vec2(0.0f), hashBits(i), i).radiance.x} / kRays;
+      mean += double{march.marchRay(vec2(0.0f), 0.5f, hashBits(i), i).radiance.x} / kRays;
     for (int i = 0; i < kDirections; ++i)
       expected +=
           skyRadiance(view.scene.environment, view.environmentMap.get(), view.up, spiral(i, kDirections)).x /
@@ -202,12 +203,12 @@ TEST(LightParameters, HeightRunsOverTheWorldBoxOfTheActiveVoxels) {
 
 TEST(LightParameters, NumbersKindsAsTheSharedTextDoes) {
   using M = March<NoBricks>;
-  EXPECT_EQ(marchOver(ViewedScene{}).skyKind(), M::kSkyNone);
+  EXPECT_EQ(marchOver(ViewedScene{}).skyKind(), kSkyNone);
   ViewedScene constant;
   constant.scene.environment.constant = {0.1, 0.0, 0.0};
-  EXPECT_EQ(marchOver(constant).skyKind(), M::kSkyConstant);
-  EXPECT_EQ(marchOver(rampView(0.0, {0, 0, 1})).skyKind(), M::kSkyRamp);
-  EXPECT_EQ(marchOver(mapView(2, 2, 0.0)).skyKind(), M::kSkyMap);
+  EXPECT_EQ(marchOver(constant).skyKind(), kSkyConstant);
+  EXPECT_EQ(marchOver(rampView(0.0, {0, 0, 1})).skyKind(), kSkyRamp);
+  EXPECT_EQ(marchOver(mapView(2, 2, 0.0)).skyKind(), kSkyMap);
   EXPECT_EQ(M::kSkyCellsAround, kEnvironmentCellsAround);
   EXPECT_EQ(M::kSkyCellsUp, kEnvironmentCellsUp);
   EXPECT_EQ(1 << (32 - M::kSkyCellShift), kEnvironmentCells);

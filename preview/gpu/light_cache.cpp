@@ -1,0 +1,177 @@
+// Filling the light cache piece by piece. Depends on what its header names.
+#include "preview/gpu/light_cache.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+namespace nephele {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using shared::MarchParameters;
+
+// As shaders/light_cache.comp declares them.
+constexpr GLuint kBlocksBinding = 1, kCostBinding = 2, kColumnsImage = 0, kSkyImage = 1;
+constexpr GLint kFirstBlockLocation = 0, kLightLocation = 1;
+constexpr int kGroupSize = 32;
+constexpr int kSky = -1;
+constexpr double kPieceSeconds = 0.02;
+constexpr uint32_t kFirstPieceBlocks = 64;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+template <class T>
+bool same(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+bool sameShape(const MarchParameters& a, const MarchParameters& b) {
+  return same(a.cacheShape, b.cacheShape) && a.counts.x == b.counts.x;
+}
+
+bool sameColumns(const MarchParameters& a, const MarchParameters& b, size_t light) {
+  return same(a.lights[light].direction, b.lights[light].direction) &&
+         same(a.lights[light].directionIndex, b.lights[light].directionIndex) &&
+         same(a.cacheSteps, b.cacheSteps) && same(a.cache.y, b.cache.y);
+}
+
+/// Everything but the camera, the lights, the view's steps and the seed.
+bool sameSky(MarchParameters a, MarchParameters b) {
+  for (MarchParameters* p : {&a, &b}) {
+    std::memset(static_cast<void*>(p), 0, offsetof(MarchParameters, worldFromIndexX));
+    std::memset(static_cast<void*>(p->lights), 0, sizeof p->lights);
+    p->sigmaS.w = p->environment.w = 0.0f;
+    p->shadow = p->walk = p->cache = glm::vec4(0.0f);
+    p->counts.x = p->counts.w = p->brickCount.w = 0;
+  }
+  return same(a, b);
+}
+
+}  // namespace
+
+LightCache::LightCache(Filter filter, const std::vector<TextChange>& changes)
+    : floats_(filter == Filter::exact),
+      program_(buildComputeProgram("light_cache.comp",
+                                   {floats_ ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
+                                    floats_ ? "NPH_CACHE_FLOAT 1" : "NPH_CACHE_FLOAT 0"},
+                                   changes)),
+      cost_(makeBuffer()) {
+  const uint32_t zero = 0;
+  glNamedBufferStorage(cost_.name(), sizeof zero, &zero, GL_DYNAMIC_STORAGE_BIT);
+}
+
+void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameters) {
+  const BrickLayout& layout = atlas.layout();
+  gpuBytes_ = sizeof(uint32_t);
+  blockTotal_ = static_cast<uint32_t>(layout.blocks.size());
+  blockIndex_ = makeIndexTexture(layout.blockWords, gpuBytes_);
+  std::vector<glm::ivec4> blocks;
+  for (const glm::ivec3& block : layout.blocks) blocks.emplace_back(block, 0);
+  blocks_ = makeBuffer();
+  const size_t listBytes = std::max<size_t>(1, blocks.size()) * sizeof(glm::ivec4);
+  glNamedBufferStorage(blocks_.name(), static_cast<GLsizeiptr>(listBytes),
+                       blocks.empty() ? nullptr : blocks.data(), 0);
+  gpuBytes_ += listBytes;
+  const uint64_t channelBytes = floats_ ? sizeof(float) : sizeof(float) / 2;
+  const auto make = [&](int samples, int layers, GLenum format, uint64_t texelBytes) {
+    GlTexture texture = makeTexture(GL_TEXTURE_3D);
+    const glm::ivec3 size = layout.blockPlaces * samples * glm::ivec3(1, 1, layers);
+    glTextureStorage3D(texture.name(), 1, format, size.x, size.y, size.z);
+    setVolumeFilter(texture.name(), atlas.filter());
+    glClearTexImage(texture.name(), 0, texelBytes == channelBytes ? GL_RED : GL_RGBA, GL_FLOAT, nullptr);
+    gpuBytes_ += texelBytes * static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) *
+                 static_cast<uint64_t>(size.z);
+    return texture;
+  };
+  constexpr uint64_t kChannels = 4;
+  constexpr int kSkyHalves = 2, kUnused = 2;  // samples along the edge of what is bound and never read
+  const bool columns = parameters.cache.x > 0.0f && parameters.counts.x > 0;
+  columns_ = make(columns ? parameters.cacheShape.x : kUnused, columns ? parameters.counts.x : 1,
+                  floats_ ? GL_R32F : GL_R16F, channelBytes);
+  const bool sky = parameters.cacheShape.y > 0;
+  sky_ = make(sky ? parameters.cacheShape.y : kUnused, kSkyHalves, floats_ ? GL_RGBA32F : GL_RGBA16F,
+              kChannels * channelBytes);
+  checkGl("making the light cache");
+}
+
+void LightCache::findTasks(const MarchParameters& parameters) {
+  const bool all = !known_ || !sameShape(*known_, parameters);
+  const auto begin = [&](int light) {
+    for (Task& task : tasks_) {
+      if (task.light != light) continue;
+      task.left = blockTotal_;
+      return;
+    }
+    tasks_.push_back({light, blockTotal_, 0});
+  };
+  if (parameters.cache.x > 0.0f)
+    for (int i = 0; i < parameters.counts.x; ++i)
+      if (all || !sameColumns(*known_, parameters, static_cast<size_t>(i))) begin(i);
+  if (parameters.cacheShape.y > 0 && (all || !sameSky(*known_, parameters))) begin(kSky);
+}
+
+void LightCache::fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) const {
+  atlas.bind();
+  glUseProgram(program_.name());
+  glBindTextureUnit(2, blockIndex_.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kBlocksBinding, blocks_.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kCostBinding, cost_.name());
+  glBindImageTexture(kColumnsImage, columns_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
+                     floats_ ? GL_R32F : GL_R16F);
+  glBindImageTexture(kSkyImage, sky_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, floats_ ? GL_RGBA32F : GL_RGBA16F);
+  glUniform1ui(kFirstBlockLocation, task.nextBlock);
+  glUniform1i(kLightLocation, task.light);
+  const int samples = task.light == kSky ? known_->cacheShape.y : known_->cacheShape.x;
+  const int perBlock = samples * samples * samples;
+  glDispatchCompute(blocks, static_cast<GLuint>((perBlock + kGroupSize - 1) / kGroupSize), 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  task.left -= blocks;
+  task.nextBlock = (task.nextBlock + blocks) % blockTotal_;
+}
+
+bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& parameters, double seconds) {
+  const bool otherVolume = atlasSerial_ != atlas.serial();
+  if (otherVolume || !known_ || !sameShape(*known_, parameters)) {
+    tasks_.clear();
+    known_.reset();
+    shape(atlas, parameters);
+    atlasSerial_ = atlas.serial();
+  }
+  findTasks(parameters);
+  if (blockTotal_ == 0) tasks_.clear();
+  known_ = parameters;
+  const auto start = Clock::now();
+  while (!tasks_.empty()) {
+    Task& task = tasks_.front();
+    const uint32_t left = std::min(task.left, blockTotal_ - task.nextBlock);
+    const auto pieceStart = Clock::now();
+    const double wanted = std::min(kPieceSeconds, seconds) * blocksPerSecond_;
+    const uint32_t blocks = std::min(left, std::max(kFirstPieceBlocks, static_cast<uint32_t>(wanted)));
+    fill(atlas, task, blocks);
+    finishGl("filling the light cache");
+    blocksPerSecond_ = blocks / std::max(secondsSince(pieceStart), 1e-6);  // 1e-6 s: a clock may stand still
+    if (task.left == 0) tasks_.erase(tasks_.begin());
+    if (secondsSince(start) >= seconds) break;
+  }
+  return tasks_.empty();
+}
+
+void LightCache::bind() const {
+  glBindTextureUnit(2, blockIndex_.name());
+  glBindTextureUnit(3, columns_.name());
+  constexpr GLuint kSkyUnit = 5;
+  glBindTextureUnit(kSkyUnit, sky_.name());
+}
+
+double LightCache::takeDensitiesRead() {
+  uint32_t read = 0;
+  glGetNamedBufferSubData(cost_.name(), 0, sizeof read, &read);
+  const uint32_t zero = 0;
+  glNamedBufferSubData(cost_.name(), 0, sizeof zero, &zero);
+  return read;
+}
+
+}  // namespace nephele

@@ -1,0 +1,57 @@
+// The light cache on the GPU: columns of density towards each light and what the sky scatters, on a coarse
+// lattice. Depends on shaders/shared, gpu/brick_atlas.h and gpu/shader.h.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "preview/gpu/brick_atlas.h"
+#include "preview/gpu/shader.h"
+#include "shaders/shared/leaves.h"
+
+namespace nephele {
+
+/// Textures that hold the samples of shaders/shared/light_cache_fill.glsl and say where each block lies.
+/// Columns are kept as e^(−κ column), κ being MarchParameters::cache.y; the sky's samples depend on the
+/// medium and its phase function as well.
+class LightCache {
+ public:
+  /// Read by the exact filter its texels are floats, else halves.
+  explicit LightCache(Filter filter, const std::vector<TextChange>& changes = {});
+
+  /// Makes it right for an atlas and parameters, which are bound to uniform block 0, by filling what differs
+  /// from the last time: each light's columns when the light or the volume changes, the sky when the medium
+  /// does as well. Fills for about `seconds` (at least one piece) and returns whether all is right; what is
+  /// not yet keeps what it held.
+  bool update(const BrickAtlas& atlas, const shared::MarchParameters& parameters, double seconds);
+
+  /// Binds to texture units 2, 3 and 5.
+  void bind() const;
+  uint64_t gpuBytes() const { return gpuBytes_; }
+  /// Densities read for what was filled since the last call.
+  double takeDensitiesRead();
+
+ private:
+  struct Task {
+    int light;          // −1: the sky
+    uint32_t left = 0;  // blocks yet to fill; it goes round, so that what changes all the time is all reached
+    uint32_t nextBlock = 0;
+  };
+
+  void shape(const BrickAtlas& atlas, const shared::MarchParameters& parameters);
+  void findTasks(const shared::MarchParameters& parameters);
+  void fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) const;
+
+  bool floats_;
+  GlProgram program_;
+  GlTexture blockIndex_, columns_, sky_;
+  GlBuffer blocks_, cost_;
+  uint32_t blockTotal_ = 0;
+  uint64_t gpuBytes_ = 0;
+  uint64_t atlasSerial_ = 0;
+  std::optional<shared::MarchParameters> known_;
+  std::vector<Task> tasks_;
+  double blocksPerSecond_ = 0.0;
+};
+
+}  // namespace nephele

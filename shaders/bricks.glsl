@@ -1,0 +1,64 @@
+// Bricks and light cache as textures, and how the shared walk reads them. Included after the parameters.
+layout(binding = 0) uniform sampler3D atlas;       // bricks of 9³ samples
+layout(binding = 1) uniform usampler2D brickIndex; // words of volume/brick_layout.h, x fastest, in rows of the texture's width
+layout(binding = 2) uniform usampler2D blockIndex; // of the light cache's blocks, likewise
+layout(binding = 3) uniform sampler3D columnCache;
+layout(binding = 5) uniform sampler3D skyCache;    // two halves along z
+
+const int kBrickSamples = 9;
+
+uint wordAt(usampler2D index, ivec3 count, ivec3 at) {
+  int i = (at.z * count.y + at.y) * count.x + at.x;
+  int width = textureSize(index, 0).x;  // a power of two
+  return texelFetch(index, ivec2(i & (width - 1), i >> findMSB(width)), 0).r;
+}
+
+uint brickWord(ivec3 brick) { return wordAt(brickIndex, params.brickCount.xyz, brick); }
+uint blockWord(ivec3 block) { return wordAt(blockIndex, params.blockCount.xyz, block); }
+
+ivec3 atlasCorner(uint word) {
+  return kBrickSamples * ivec3(word & 255u, (word >> 8u) & 255u, (word >> 16u) & 127u);
+}
+
+#if NPH_FILTER_EXACT
+vec4 mixedFetch(sampler3D volume, ivec3 t, vec3 f) {
+  vec4 s000 = texelFetch(volume, t, 0);
+  vec4 s100 = texelFetch(volume, t + ivec3(1, 0, 0), 0);
+  vec4 s010 = texelFetch(volume, t + ivec3(0, 1, 0), 0);
+  vec4 s110 = texelFetch(volume, t + ivec3(1, 1, 0), 0);
+  vec4 s001 = texelFetch(volume, t + ivec3(0, 0, 1), 0);
+  vec4 s101 = texelFetch(volume, t + ivec3(1, 0, 1), 0);
+  vec4 s011 = texelFetch(volume, t + ivec3(0, 1, 1), 0);
+  vec4 s111 = texelFetch(volume, t + ivec3(1, 1, 1), 0);
+  vec4 y0 = mix(mix(s000, s100, f.x), mix(s010, s110, f.x), f.y);
+  vec4 y1 = mix(mix(s001, s101, f.x), mix(s011, s111, f.x), f.y);
+  return mix(y0, y1, f.z);
+}
+
+float brickDensity(uint word, vec3 position) {
+  // A position a hair outside the brick reads on along its outermost cell.
+  ivec3 cell = clamp(ivec3(floor(position)), ivec3(0), ivec3(kBrickSamples - 2));
+  return max(0.0, mixedFetch(atlas, atlasCorner(word) + cell, position - vec3(cell)).r);
+}
+
+vec4 cacheFetch(sampler3D cache, vec3 texel) {
+  ivec3 cell = min(ivec3(texel), textureSize(cache, 0) - 2);
+  return mixedFetch(cache, cell, texel - vec3(cell));
+}
+#else
+float brickDensity(uint word, vec3 position) {
+  // A texel's centre lies at its index plus a half.
+  vec3 texel = vec3(atlasCorner(word)) + clamp(position, 0.0, float(kBrickSamples - 1)) + 0.5;
+  return textureLod(atlas, texel / vec3(textureSize(atlas, 0)), 0.0).r;
+}
+
+vec4 cacheFetch(sampler3D cache, vec3 texel) {
+  return textureLod(cache, (texel + 0.5) / vec3(textureSize(cache, 0)), 0.0);
+}
+#endif
+
+float cachedColumn(vec3 texel) { return cacheFetch(columnCache, texel).r; }
+
+vec4 cachedSky(int part, vec3 texel) {
+  return cacheFetch(skyCache, texel + vec3(0.0, 0.0, part * (textureSize(skyCache, 0).z / 2)));
+}

@@ -1,0 +1,61 @@
+// Entry point of the light cache: fills the samples of the blocks from `firstBlock` on, one block a work group in x.
+#version 450 core
+#include "dialect.glsl"
+#include "shared/parameters.glsl"
+
+layout(local_size_x = 32) in;
+layout(std140, binding = 0) uniform MarchBlock { MarchParameters params; };
+layout(std430, binding = 1) readonly buffer Blocks { ivec4 blocks[]; };  // those kept, in order of their places
+layout(std430, binding = 2) buffer Cost { uint densitiesRead; };
+#if NPH_CACHE_FLOAT
+layout(binding = 0, r32f) writeonly uniform image3D columns;
+layout(binding = 1, rgba32f) writeonly uniform image3D skyImage;
+#else
+layout(binding = 0, r16f) writeonly uniform image3D columns;
+layout(binding = 1, rgba16f) writeonly uniform image3D skyImage;
+#endif
+layout(location = 0) uniform uint firstBlock;
+layout(location = 1) uniform int light;  // −1: the sky
+
+#define NPH_CACHED false  // nothing is scattered here
+#define NPH_SKY 0
+#define NPH_NEAR false
+#define NPH_POINTS true
+#define NPH_POWDER false
+#define NPH_LOBES true
+#include "bricks.glsl"
+#include "sky.glsl"
+#include "shared/chord.glsl"
+#include "shared/phase.glsl"
+#include "shared/random.glsl"
+#include "shared/ray_box.glsl"
+#include "shared/remap.glsl"
+#include "shared/powder.glsl"
+#include "shared/step_integral.glsl"
+#include "shared/walk.glsl"
+#include "shared/light_cache.glsl"
+#include "shared/environment.glsl"
+#include "shared/light.glsl"
+#include "shared/light_cache_fill.glsl"
+
+void main() {
+  ivec3 block = blocks[firstBlock + gl_WorkGroupID.x].xyz;
+  int samples = light < 0 ? params.cacheShape.y : params.cacheShape.x;
+  int i = int(gl_WorkGroupID.y * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
+  if (i >= samples * samples * samples) return;
+  ivec3 local = ivec3(i % samples, i / samples % samples, i / (samples * samples));
+  vec3 position = cachePosition(block, local, samples);
+  uint place = blockWord(block) - 1u;
+  ivec3 texel = samples * ivec3(place & 1023u, (place >> 10u) & 1023u, place >> 20u) + local;
+  vec2 cost = vec2(0.0);
+  if (light < 0) {
+    vec4 sky0;
+    vec4 sky1;
+    skyToCache(position, sky0, sky1, cost);
+    imageStore(skyImage, texel, sky0);
+    imageStore(skyImage, texel + ivec3(0, 0, imageSize(skyImage).z / 2), sky1);
+  } else {
+    imageStore(columns, texel + ivec3(0, 0, light * params.cacheShape.z), vec4(columnToCache(light, position, cost)));
+  }
+  atomicAdd(densitiesRead, uint(cost.x));
+}

@@ -1,0 +1,50 @@
+// What the samples of the light cache hold. Included as walk.glsl is, after light.glsl.
+
+NPH_CONST int kSkyDirections = 12;
+
+// Index-space position of sample `local` of a block.
+NPH_FN vec3 cachePosition(ivec3 block, ivec3 local, int samples) {
+  return vec3(block) * kBlockEdge + vec3(local) * (kBlockEdge / float(samples - 1));
+}
+
+// The whole column from a position to a light, in units of params.cache.y.
+NPH_FN float columnToCache(int light, vec3 position, NPH_INOUT(vec2) cost) {
+  Lighting l = lightingFrom(light, position);
+  return exp(-params.cache.y * columnDensity(position, l.toLightIndex, l.reach, 17.0f / params.cache.y, vec2(params.cacheSteps), 0.5f, cost));
+}
+
+// Directions evenly over the sphere: a Fibonacci spiral.
+NPH_FN vec3 skyDirection(int i) {
+  float z = 1.0f - (2.0f * float(i) + 1.0f) / float(kSkyDirections);
+  float r = sqrt(max(0.0f, 1.0f - z * z));
+  float angle = 2.39996323f * float(i);  // π (3 − √5)
+  return vec3(r * cos(angle), r * sin(angle), z);
+}
+
+// What the sky scatters at a position towards a ray, per unit density and before σ_s, to first order in the ray's direction
+// (the phase function's and the sky's first two bands of spherical harmonics): sky0.rgb + dot(sky1.xyz, ray) · sky0.rgb.
+NPH_FN void skyToCache(vec3 position, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NPH_INOUT(vec2) cost) {
+  float enough = columnThatHides();
+  vec3 even = vec3(0.0f);
+  vec3 slope = vec3(0.0f);
+  for (int i = 0; i < kSkyDirections; ++i) {
+    vec3 toSky = skyDirection(i);
+    vec3 toSkyIndex = toSky.x * vec3(params.indexFromWorldX) + toSky.y * vec3(params.indexFromWorldY) +
+                      toSky.z * vec3(params.indexFromWorldZ);
+    float column = columnDensity(position, toSkyIndex, 3.0e38f, enough, vec2(params.cacheSteps.z, params.cacheSteps.w), 0.5f, cost);
+    float extinction = 1.0f;
+    float scattering = 1.0f / float(kSkyDirections);
+    float g = phaseMeanCosine(vec3(params.phase));
+    vec3 radiance = environmentRadiance(toSky);
+    for (int m = 0; m <= params.counts.y; ++m) {
+      vec3 light = scattering * radiance * exp(-(extinction * column) * vec3(params.sigmaT));
+      even += light;
+      slope += (3.0f * g * dot(light, vec3(1.0f / 3.0f))) * toSky;
+      extinction *= params.octaves.x;
+      scattering *= params.octaves.y;
+      g *= params.octaves.z;
+    }
+  }
+  sky0 = vec4(even, 0.0f);
+  sky1 = vec4(slope / max(dot(even, vec3(1.0f / 3.0f)), 1e-30f), 0.0f);
+}
