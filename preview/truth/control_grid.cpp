@@ -23,8 +23,8 @@ constexpr size_t kHalves = 8;     // cells of that edge in a brick
 // diagonal, or this share of the mean: the closed form then is near the truth, and weights stay near 1.
 constexpr double kSmoothDepth = 0.5;
 // In a smooth cell looks are so many that a ray through an optical depth x has a relative variance of at most
-// e^(0.3 x) − 1, in most clouds a few times less.
-constexpr float kLookVariance = 0.3f;
+// e^(0.1 x) − 1, in most clouds a few times less.
+constexpr float kLookVariance = 0.1f;
 // The control of a smooth cell is at least this share of the maximum, so that a path's weight stays below its
 // inverse.
 constexpr float kSmallestControl = 0.125f;

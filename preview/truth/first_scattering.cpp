@@ -101,20 +101,38 @@ class EventList {
     return counts > 0.0f;
   }
 
-  /// True density over control on the way from t0 to t in a smooth cell, as transmittance and as scattering
-  /// at t.
+  float densityAtT(const ControlCell& cell, float t) {
+    ++looks_;
+    return densityIn(medium_, cell, ray_.origin + t * ray_.direction);
+  }
+
+  /// True transmittance over the control's from t0 to t in a smooth cell.
   Value correction(const Event<Value>& event, float t) {
     const ControlCell& cell = *event.cell;
     Value factor(1.0f);
-    const auto densityAtT = [&](float at) {
-      ++looks_;
-      return densityIn(medium_, cell, ray_.origin + at * ray_.direction);
-    };
     LookClock clock(random_);
     clock.cross(cell.residual, event.t0, t, random_, [&](float at) {
-      factor *= notNegative(Value(1.0f) - (densityAtT(at) - cell.control) / cell.residual * sigma_);
+      factor *= notNegative(Value(1.0f) - (densityAtT(cell, at) - cell.control) / cell.residual * sigma_);
     });
-    return factor * (densityAtT(t) / cell.control);
+    return factor;
+  }
+
+  /// In a smooth cell: of a few places drawn from the control, one in each part, one by its true density
+  /// (resampled importance sampling [Talbot et al. 2005]). `apart` becomes its distance from t0; returns the
+  /// mean of true density over control.
+  float placeByDensity(const Event<Value>& event, float within, float channel, float& apart) {
+    constexpr int kPlaces = 4;
+    float places[kPlaces], densities[kPlaces], sum = 0.0f;
+    for (int i = 0; i < kPlaces; ++i) {
+      places[i] = drawWithin(event, (static_cast<float>(i) + random_.uniform()) / kPlaces, channel);
+      densities[i] = densityAtT(*event.cell, event.t0 + places[i]);
+      sum += densities[i];
+    }
+    float rest = within * sum;  // in order of distance, so that even numbers stay even
+    int chosen = 0;
+    while (chosen + 1 < kPlaces && rest >= densities[chosen]) rest -= densities[chosen++];
+    apart = places[chosen];
+    return sum / (kPlaces * event.cell->control);
   }
 
   /// Distance from t0 at which the control scatters, drawn from the channels' mean.
@@ -134,15 +152,19 @@ class EventList {
   }
 
   void place(const Event<Value>& event, float within, float channel, FirstScattering& first) {
-    const bool isPiece = event.t1 > event.t0;
-    const float apart = isPiece ? drawWithin(event, within, channel) : 0.0f;
+    const bool isPiece = event.t1 > event.t0, smooth = event.cell->smooth;
+    float apart = 0.0f, density = 1.0f;
+    if (smooth)
+      density = placeByDensity(event, within, channel, apart);
+    else if (isPiece)
+      apart = drawWithin(event, within, channel);
     first.distance = event.t0 + apart;
     first.position = ray_.origin + first.distance * ray_.direction;
     // Of the light that collides here, per channel, over the density with which the place was drawn.
     Value arrives = event.transmittance * sigma_;
     if (isPiece) arrives *= exponential((-event.cell->control * apart) * sigma_);
-    const Value drawn = arrives * (mass_ / meanOf(arrives));
-    vec3 collides(event.cell->smooth ? drawn * correction(event, first.distance) : drawn);
+    const Value drawn = arrives * (density * mass_ / meanOf(arrives));
+    vec3 collides(smooth ? drawn * correction(event, first.distance) : drawn);
     first.taken = meanOf(collides);
     for (int c = 0; c < 3; ++c)
       collides[c] *= medium_.sigmaT[c] > 0.0f ? medium_.sigmaS[c] / medium_.sigmaT[c] : 0.0f;
