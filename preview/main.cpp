@@ -6,6 +6,7 @@
 
 #include "base/version.h"
 #include "preview/app/app.h"
+#include "preview/chart_command.h"
 #include "preview/measure/compare.h"
 #include "preview/render_command.h"
 
@@ -35,7 +36,8 @@ std::pair<int, int> parseFrames(const std::string& text) {
 struct Arguments {
   RenderOptions render;
   std::string size = "960x540", windowSize = "1280x720", frames, error, filter = "hardware", tolerance;
-  std::string picture, reference;
+  std::string picture, reference, chartSize = "128x72";
+  ChartOptions chart;
   double step = 0.0, exposure = 0.0;
   bool json = false;
 };
@@ -69,6 +71,25 @@ void addRenderOptions(CLI::App& app, Arguments& a) {
       ->capture_default_str()
       ->check(CLI::IsMember({"exact", "hardware"}));
   app.add_option("--frames", a.frames, "Render frames A-B, both included, to OUT_####");
+}
+
+void addChartOptions(CLI::App& app, Arguments& a) {
+  app.add_option("FILE", a.chart.file, "The .vdb to measure on")->required();
+  app.add_option("--out", a.chart.out, "The folder for chart.csv, chart.svg, chart.png and index.html")
+      ->required();
+  app.add_option("--scene", a.chart.scene, "A scene, or any YAML file with a top-level scene:");
+  app.add_option("--grid", a.chart.grid, "The grid (default: density, else the first float fog grid)");
+  app.add_option("--methods", a.chart.methods,
+                 "Methods to chart, as in march,reference (default: all that are built)")
+      ->delimiter(',');
+  app.add_option("--minutes", a.chart.minutes, "Time to measure for, minutes")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 1e4));
+  app.add_option("--bounces", a.chart.bounces,
+                 "Scatterings after the first in truth (default: 0 where the scene has no octaves, else all)")
+      ->check(CLI::Range(0, 1000000));
+  app.add_option("--size", a.chartSize, "Size of the pictures that are measured, pixels")
+      ->capture_default_str();
 }
 
 int renderOrShow(Arguments& a, bool renderGiven, bool stepGiven, bool exposureGiven) {
@@ -106,8 +127,8 @@ int run(int argc, char** argv) {
   compare->add_option("B", a.reference, "The reference, .exr")->required();
   compare->add_option("--tolerance", a.tolerance, "Largest relative RMSE, as in 0.03 or 3%");
   compare->add_flag("--json", a.json, "Print JSON");
-  CLI::App* chart = app.add_subcommand("chart", "Chart methods against truth (not built yet)");
-  chart->allow_extras();
+  CLI::App* chart = app.add_subcommand("chart", "Chart methods against truth: CSV, SVG, PNG and a page");
+  addChartOptions(*chart, a);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -115,7 +136,10 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     throw InputError({}, error.what(), "try nephele-preview --help");
   }
-  if (chart->parsed()) throw InputError({}, "chart is not built yet");
+  if (chart->parsed()) {
+    parseSize("--size", a.chartSize, a.chart.width, a.chart.height);
+    return chartCommand(a.chart);
+  }
   if (compare->parsed()) {
     std::optional<double> tolerance;
     if (!a.tolerance.empty()) tolerance = parseTolerance(a.tolerance);

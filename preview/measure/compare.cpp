@@ -97,6 +97,39 @@ Comparison comparePictures(const Picture& picture, const std::string& pictureNam
   return comparison;
 }
 
+NoisyError compareWithHalves(const Picture& picture, const Picture& reference) {
+  const Comparison plain = comparePictures(picture, "picture", reference, "reference");
+  NoisyError error;
+  error.bias = plain.bias;
+  error.p99 = plain.p99;
+  const std::vector<size_t> seen = seenPixels(picture, reference);
+  if (seen.empty()) return error;
+  const double count = static_cast<double>(seen.size());
+  // Squares relative to the channel's mean, pixel by pixel, averaged over channels.
+  std::vector<double> squares(seen.size());
+  for (const std::string name : {"R", "G", "B"}) {
+    const std::vector<float>& x = planeOf(picture, "picture", name);
+    const std::vector<float>& a = planeOf(reference, "reference", "half1." + name);
+    const std::vector<float>& b = planeOf(reference, "reference", "half2." + name);
+    double mean = 0.0;
+    for (const size_t i : seen) mean += 0.5 * (double{a[i]} + double{b[i]}) / count;
+    if (!(mean > 0.0)) continue;  // a black channel has no relative error
+    for (size_t k = 0; k < seen.size(); ++k) {
+      const size_t i = seen[k];
+      squares[k] += (double{x[i]} - double{a[i]}) * (double{x[i]} - double{b[i]}) / (3.0 * mean * mean);
+    }
+  }
+  double mean = 0.0, variance = 0.0;
+  for (const double square : squares) mean += square / count;
+  for (const double square : squares) variance += (square - mean) * (square - mean) / count;
+  constexpr double kInterval = 1.96;  // standard deviations of a normal mean
+  const double apart = kInterval * std::sqrt(variance / count);
+  error.relativeRmse = std::sqrt(std::max(mean, 0.0));
+  error.low = std::sqrt(std::max(mean - apart, 0.0));
+  error.high = std::sqrt(std::max(mean + apart, 0.0));
+  return error;
+}
+
 std::string comparisonAsText(const Comparison& comparison) {
   std::ostringstream out;
   out << "relative RMSE " << comparison.relativeRmse << ", bias " << comparison.bias << ", p99 "

@@ -26,6 +26,20 @@ struct Comparison {
 Comparison comparePictures(const Picture& picture, const std::string& pictureName, const Picture& reference,
                            const std::string& referenceName);
 
+/// A relative RMSE against a noisy reference, with its 95% confidence interval (over pixels, as if each were
+/// independent).
+struct NoisyError {
+  double relativeRmse = 0.0;  // the root of the square below where that is positive, else 0
+  double low = 0.0, high = 0.0;
+  double bias = 0.0;
+  double p99 = 0.0;  // against the halves' mean: the reference's noise is in it
+};
+
+/// As comparePictures against a reference of two independent halves (planes half1.R … half2.B): the square is
+/// (x − r1)(x − r2), in which the reference's noise cancels; the mean is that of both halves. Throws
+/// InputError where sizes differ or a plane is missing.
+NoisyError compareWithHalves(const Picture& picture, const Picture& reference);
+
 /// "relative RMSE 1.2%, …" in one line; or JSON with the keys pixels, relative_rmse, bias, p99, max.
 std::string comparisonAsText(const Comparison& comparison);
 std::string comparisonAsJson(const Comparison& comparison);

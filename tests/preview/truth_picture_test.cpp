@@ -50,8 +50,9 @@ TEST(TruthPicture, SingleScatteringInASlabHasItsClosedForms) {
 }
 
 TEST(TruthPicture, SingleScatteringThroughTheSideOfABoxHasItsIntegral) {
-  // Camera along +z, sun from +x, scattering at distance s into a cube of constant density, light from there
-  // through the half of it: E p(0) σ e^(−σ a/2) (1 − e^(−σ a))/σ per unit density, a the edge.
+  // Camera along +z, sun from +x: scattering at depth z is lit through half of the cube at the density there,
+  // E p(0) ∫ σ ρ(z) e^(−σ ∫ρ) e^(−σ ρ(z) a/2) dz with a the edge; ρ is 1 but for the ramps of one voxel at
+  // both faces.
   constexpr int kSide = 96;
   const double voxel = 1.0 / kSide, sigma = 4.0;
   const glm::dmat4 transform(voxel, 0, 0, 0, 0, voxel, 0, 0, 0, 0, voxel, 0, 0, 0, 0, 1);
@@ -60,9 +61,17 @@ TEST(TruthPicture, SingleScatteringThroughTheSideOfABoxHasItsIntegral) {
   const double centre = 0.5 * (kSide - 1) * voxel;
   ViewedScene view = viewFrom({centre, centre, -3}, {centre, centre, 0}, 1e-4, mediumOf(sigma, 0.0, 0.0));
   view.scene.lights = {sunFrom({1, 0, 0}, 2.0)};
-  const double expected = 2.0 / (4.0 * kPi) * std::exp(-0.5 * sigma) * -std::expm1(-sigma);
-  // The ramps of one voxel at the faces change the light there to second order: σ voxel.
-  EXPECT_NEAR(meanOf(plane(renderTruth(bricks, view, requestOf(8, 64, 0)), "G")) / expected, 1.0, 0.01);
+  constexpr int kSteps = 100000;
+  double expected = 0.0, column = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double z = (i + 0.5) / kSteps * (kSide + 1),
+                 dz = (kSide + 1) * voxel / kSteps;  // voxels; world units
+    const double rho = std::min({z, kSide + 1.0 - z, 1.0});
+    column += 0.5 * rho * dz;
+    expected += 2.0 / (4.0 * kPi) * sigma * rho * std::exp(-sigma * (column + 0.5 * rho)) * dz;
+    column += 0.5 * rho * dz;
+  }
+  EXPECT_NEAR(meanOf(plane(renderTruth(bricks, view, requestOf(16, 256, 0)), "G")) / expected, 1.0, 0.01);
 }
 
 TEST(TruthPicture, APointLightFallsWithTheSquareOfItsDistance) {

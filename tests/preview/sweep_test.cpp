@@ -1,0 +1,95 @@
+// Errors against noisy truth, Pareto fronts and knees on closed forms; charts' tables and scripts.
+#include "preview/measure/sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/chart.h"
+#include "preview/truth/random.h"
+
+namespace nephele {
+namespace {
+
+/// Truth of radiance 2 everywhere, in two halves that are off by `noise` times a normal number each, and a
+/// picture that is off by `error` times another.
+struct NoisyPair {
+  NoisyPair(double error, double noise) {
+    for (Picture* made : {&picture, &truth}) {
+      made->width = made->height = 200;
+      for (const char* name : {"R", "G", "B", "A"}) made->add(name);
+      made->planes[3].assign(made->planes[3].size(), 1.0f);
+    }
+    for (const char* half : {"half1.", "half2."})
+      for (const char* name : {"R", "G", "B"}) truth.add(std::string(half) + name);
+    truth::Random random(1);
+    const auto normal = [&] {  // Box and Muller
+      const double r = std::sqrt(2.0 * double{random.exponential()});
+      return r * std::cos(6.283185307179586 * double{random.uniform()});
+    };
+    for (size_t i = 0; i < picture.planes[0].size(); ++i)
+      for (size_t c = 0; c < 3; ++c) {
+        const double a = 2.0 + noise * normal(), b = 2.0 + noise * normal();
+        truth.planes[4 + c][i] = static_cast<float>(a);
+        truth.planes[7 + c][i] = static_cast<float>(b);
+        truth.planes[c][i] = static_cast<float>(0.5 * (a + b));
+        picture.planes[c][i] = static_cast<float>(2.0 + error * normal());
+      }
+  }
+  Picture picture, truth;
+};
+
+TEST(CompareWithHalves, NoiseOfTheReferenceCancels) {
+  const NoisyPair pair(0.02, 0.2);  // truth's own noise is ten times the error
+  const NoisyError error = compareWithHalves(pair.picture, pair.truth);
+  EXPECT_NEAR(error.relativeRmse, 0.01, 0.002);
+  EXPECT_LT(error.low, 0.01);
+  EXPECT_GT(error.high, 0.01);
+  // The plain figure holds the noise of the halves' mean, 0.2/√2 over 2.
+  EXPECT_GT(comparePictures(pair.picture, "a", pair.truth, "b").relativeRmse, 0.05);
+}
+
+TEST(CompareWithHalves, WithoutNoiseItIsThePlainFigure) {
+  const NoisyPair pair(0.1, 0.0);
+  const Comparison plain = comparePictures(pair.picture, "a", pair.truth, "b");
+  const NoisyError error = compareWithHalves(pair.picture, pair.truth);
+  EXPECT_NEAR(error.relativeRmse, plain.relativeRmse, 1e-3 * plain.relativeRmse);
+  EXPECT_EQ(error.bias, plain.bias);
+}
+
+Measured pointAt(double milliseconds, double error) {
+  Measured m;
+  m.milliseconds = milliseconds;
+  m.error.relativeRmse = error;
+  return m;
+}
+
+TEST(Pareto, FrontHoldsWhatNothingBeats) {
+  const std::vector<Measured> points = {pointAt(10, 0.1), pointAt(1, 0.5),  pointAt(5, 0.2),
+                                        pointAt(6, 0.3),  pointAt(10, 0.2), pointAt(100, 0.09)};
+  EXPECT_EQ(paretoFront(points), (std::vector<size_t>{1, 2, 0, 5}));
+}
+
+TEST(Pareto, KneeIsFarthestBelowTheLine) {
+  // On logarithmic axes: straight but for one point that bends towards the origin.
+  const std::vector<Measured> points = {pointAt(1, 1.0), pointAt(10, 0.5), pointAt(100, 0.011),
+                                        pointAt(1000, 0.01)};
+  const std::vector<size_t> front = paretoFront(points);
+  EXPECT_EQ(front[kneeOf(points, front)], 2u);
+  EXPECT_EQ(kneeOf(points, {0, 3}), 0u);
+}
+
+TEST(Chart, CellsAreQuotedWhereCommasWouldSplitThem) {
+  EXPECT_EQ(csvText({{"a", "b"}, {{"1,5", "say \"hi\""}, {"x", ""}}}),
+            "a,b\n\"1,5\",\"say \"\"hi\"\"\"\nx,\n");
+}
+
+TEST(Chart, TitlesCannotEndTheScriptsText) {
+  const std::string script =
+      gnuplotScript({{"it's; system 'x'\n!", "x", "y", {{"s", {{1, 2, 1, 3}}, false}}}}, "svg", "o.svg");
+  EXPECT_NE(script.find("set title 'it''s; system ''x'' !' noenhanced"), std::string::npos);
+  EXPECT_NE(script.find("1 2 1 3"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace nephele
