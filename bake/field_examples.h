@@ -79,7 +79,7 @@ inline std::string sampleFile(std::string_view row) {
 }
 
 /// The row at its defaults. Child fields are two balls side by side for lists; for single ones fBm where the
-/// parameter is called b or t, and a soft ball elsewhere.
+/// parameter is called b or t, and a soft ball elsewhere. A transform makes streaks of fBm.
 inline FieldPtr exampleField(const std::string& name, const BuildContext& context) {
   const auto ball = [&](double x) {
     const FieldRow* const sphere = findField("sphere");
@@ -100,6 +100,11 @@ inline FieldPtr exampleField(const std::string& name, const BuildContext& contex
       values.emplace(parameter.name, parameter.name == "b" || parameter.name == "t"
                                          ? exampleField("fbm", context)
                                          : ball(0.0));
+  }
+  if (name == "transform") {  // its defaults change nothing
+    values["input"] = exampleField("fbm", context);
+    values["scale"] = std::array<double, 3>{3, 1, 0.5};
+    values["rotate"] = std::array<double, 3>{0, 25, 0};
   }
   return row->build(Arguments(std::move(values)), context);
 }

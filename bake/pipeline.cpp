@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "bake/build_identity.h"
 #include "bake/field_specs.h"
 #include "bake/fields/motion.h"
 #include "base/hash.h"
@@ -183,26 +184,31 @@ Asset readAsset(const yaml::Entry& entry, FieldReader& fields, Diagnostics& out)
   return asset;
 }
 
+/// Builds each shared field once for each size of voxel that it is read with.
 class FieldBuilder {
  public:
-  explicit FieldBuilder(const BuildContext& context) : context_(context) {}
-
-  FieldPtr build(const FieldSpec& spec) {
-    FieldPtr& known = built_[&spec];
-    if (known) return known;
+  FieldPtr build(const FieldSpec& spec, const BuildContext& context) {
+    const Key key{&spec, context.voxelSize};
+    if (const auto known = built_.find(key); known != built_.end()) return known->second;
+    // Transforms of transforms of one field can ask for it at ever new sizes.
+    constexpr size_t kMostFields = 100000;
+    if (built_.size() >= kMostFields)
+      throw InputError(spec.where, "the recipe makes more than " + std::to_string(kMostFields) +
+                                       " fields, by transforms that share their inputs");
     auto values = spec.values;
+    const BuildContext inner = spec.row->inner ? spec.row->inner(Arguments(values), context) : context;
     for (const auto& [name, children] : spec.children) {
       std::vector<FieldPtr> list;
-      for (const FieldSpecPtr& child : children) list.push_back(build(*child));
+      for (const FieldSpecPtr& child : children) list.push_back(build(*child, inner));
       const bool isList = listParameter(*spec.row) && listParameter(*spec.row)->name == name;
       values.emplace(name, isList ? Value{std::move(list)} : Value{list.front()});
     }
-    return built_[&spec] = spec.row->build(Arguments(std::move(values)), context_);
+    return built_[key] = spec.row->build(Arguments(std::move(values)), context);
   }
 
  private:
-  BuildContext context_;
-  std::map<const FieldSpec*, FieldPtr> built_;
+  using Key = std::pair<const FieldSpec*, double>;
+  std::map<Key, FieldPtr> built_;
 };
 
 /// Hashes specs from the leaves up, each shared one once, so that sharing by name or alias changes nothing.
@@ -284,7 +290,7 @@ std::optional<FrameRange> parseFrames(const std::string& text) {
 }
 
 FieldPtr buildField(const FieldSpec& spec, const BuildContext& context) {
-  return FieldBuilder(context).build(spec);
+  return FieldBuilder().build(spec, context);
 }
 
 BuildContext contextOf(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame) {
@@ -309,6 +315,7 @@ std::vector<LoopNote> loopNotesOf(const Asset& asset) {
 std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame) {
   Hasher hasher;
   hasher.text(programVersion());
+  hasher.text(buildIdentity());
   hasher.value(pipeline.upAxis);
   hasher.value(pipeline.seed);
   hasher.value(asset.voxelSize);

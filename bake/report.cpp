@@ -45,10 +45,13 @@ std::string reportAsJson(const std::vector<BakeRecord>& records) {
     entry["mass"] = {{"stored", record.mass}};
     Json notes = Json::array();
     for (const BandLimitNote& note : record.bandLimit)
-      notes.push_back({{"field", note.field},
-                       {"octave", note.octave},
-                       {"cell_voxels", note.cellVoxels},
-                       {"weight", note.weight}});
+      if (note.squeeze > 0.0)
+        notes.push_back({{"field", note.field}, {"squeeze", note.squeeze}});
+      else
+        notes.push_back({{"field", note.field},
+                         {"octave", note.octave},
+                         {"cell_voxels", note.cellVoxels},
+                         {"weight", note.weight}});
     entry["band_limit"] = std::move(notes);
     if (!record.velocityHash.empty()) {
       entry["velocity"] = {{"content_hash", record.velocityHash}};

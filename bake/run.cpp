@@ -185,6 +185,7 @@ void tell(const BakeRecord& record) {
                   record.secondsWrite);
   std::cerr << line;
   for (const BandLimitNote& note : record.bandLimit) {
+    if (note.squeeze > 0.0) continue;  // in the report alone
     std::snprintf(line, sizeof line, "  %s: octave %d has %.2f voxels a cell: %s\n", note.field.c_str(),
                   note.octave + 1, note.cellVoxels, note.weight > 0.0 ? "weakened" : "left out");
     std::cerr << line;

@@ -7,21 +7,32 @@
 #include <map>
 
 #include "bake/fields/motion.h"
+#include "bake/fields/transform.h"
 
 namespace nephele {
 namespace {
 
-class Uniform final : public VectorField {
+/// A velocity of a field that can be placed by a transform along with the field.
+class Flow : public VectorField {
+ public:
+  virtual std::shared_ptr<const Flow> placed(const Placement& placement, const glm::dvec3& scroll) const = 0;
+};
+using FlowPtr = std::shared_ptr<const Flow>;
+
+class Uniform final : public Flow {
  public:
   explicit Uniform(const glm::dvec3& velocity) : velocity_(velocity) {}
+  FlowPtr placed(const Placement& placement, const glm::dvec3& scroll) const override {
+    return std::make_shared<Uniform>(placement.worldFromLocal * velocity_ + scroll);
+  }
   void evaluate(const Lattice&, float* x, float* y, float* z) const override {
-    std::fill_n(x, kBlockPoints, velocity_.x);
-    std::fill_n(y, kBlockPoints, velocity_.y);
-    std::fill_n(z, kBlockPoints, velocity_.z);
+    std::fill_n(x, kBlockPoints, float(velocity_.x));
+    std::fill_n(y, kBlockPoints, float(velocity_.y));
+    std::fill_n(z, kBlockPoints, float(velocity_.z));
   }
 
  private:
-  glm::vec3 velocity_;
+  glm::dvec3 velocity_;
 };
 
 /// Three fields, one a component.
@@ -40,13 +51,19 @@ class Components final : public VectorField {
 /// A velocity and the field that carries it.
 struct Carrier {
   FieldPtr field;
-  VectorFieldPtr velocity;
+  FlowPtr velocity;
 };
 
 /// Σ |value| v / Σ |value|; the plain mean where all values are 0.
-class Mean final : public VectorField {
+class Mean final : public Flow {
  public:
   explicit Mean(std::vector<Carrier> carriers) : carriers_(std::move(carriers)) {}
+  FlowPtr placed(const Placement& placement, const glm::dvec3& scroll) const override {
+    std::vector<Carrier> moved;
+    for (const Carrier& carrier : carriers_)
+      moved.push_back({placedField(carrier.field, placement), carrier.velocity->placed(placement, scroll)});
+    return std::make_shared<Mean>(std::move(moved));
+  }
   void evaluate(const Lattice& lattice, float* x, float* y, float* z) const override {
     // Weighted sums along x, y, z and of the weights; then the same unweighted.
     float weighted[4][kBlockPoints] = {}, plain[3][kBlockPoints] = {};
@@ -80,19 +97,21 @@ class Derivation {
   explicit Derivation(const BuildContext& context) : context_(context) {}
 
   /// nullptr where nothing in the field moves.
-  VectorFieldPtr of(const FieldSpec& spec) {
+  FlowPtr of(const FieldSpec& spec) {
     if (const auto known = known_.find(&spec); known != known_.end()) return known->second;
     return known_[&spec] = derive(spec);
   }
 
  private:
-  VectorFieldPtr derive(const FieldSpec& spec) {
-    std::vector<std::pair<const FieldSpec*, VectorFieldPtr>> moving;
+  FlowPtr derive(const FieldSpec& spec) {
+    std::vector<std::pair<const FieldSpec*, FlowPtr>> moving;
     for (const auto& [name, children] : spec.children)
       for (const FieldSpecPtr& child : children)
-        if (VectorFieldPtr velocity = of(*child)) moving.emplace_back(child.get(), std::move(velocity));
+        if (FlowPtr velocity = of(*child)) moving.emplace_back(child.get(), std::move(velocity));
     if (moving.empty()) return ownOf(spec);
-    const VectorFieldPtr first = moving.front().second;
+    const FlowPtr first = moving.front().second;
+    if (spec.row->name == "transform")
+      return first->placed(placementOf(Arguments(spec.values), context_), ownSpeed(spec));
     if (std::all_of(moving.begin(), moving.end(), [&](const auto& m) { return m.second == first; }))
       return first;
     std::vector<Carrier> carriers;
@@ -102,18 +121,22 @@ class Derivation {
   }
 
   /// Equal speeds are one object, so that they are known as equal.
-  VectorFieldPtr ownOf(const FieldSpec& spec) {
-    if (!spec.row->motion) return nullptr;
-    const glm::dvec3 speed = meanScroll(spec.row->motion(Arguments(spec.values)), context_);
+  FlowPtr ownOf(const FieldSpec& spec) {
+    const glm::dvec3 speed = ownSpeed(spec);
     if (speed == glm::dvec3(0.0)) return nullptr;
-    VectorFieldPtr& known = uniform_[{speed.x, speed.y, speed.z}];
+    FlowPtr& known = uniform_[{speed.x, speed.y, speed.z}];
     if (!known) known = std::make_shared<Uniform>(speed);
     return known;
   }
 
+  glm::dvec3 ownSpeed(const FieldSpec& spec) const {
+    return spec.row->motion ? meanScroll(spec.row->motion(Arguments(spec.values)), context_)
+                            : glm::dvec3(0.0);
+  }
+
   BuildContext context_;
-  std::map<const FieldSpec*, VectorFieldPtr> known_;
-  std::map<std::array<double, 3>, VectorFieldPtr> uniform_;
+  std::map<const FieldSpec*, FlowPtr> known_;
+  std::map<std::array<double, 3>, FlowPtr> uniform_;
 };
 
 }  // namespace

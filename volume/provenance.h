@@ -12,7 +12,7 @@ namespace nephele {
 /// one (sigma_s, sigma_a per unit density per world unit, g).
 struct Provenance {
   char upAxis = 'z';
-  std::string recipeHash;  // hex; equal where the asset would bake to the same content by the same version
+  std::string recipeHash;  // hex; equal where the asset would bake to the same content by the same sources
   int64_t seed = 0;
   std::optional<int> frame;
   bool hasMedium = false;

@@ -60,6 +60,13 @@ std::string framesText(const Loop& loop) {
 void complainOfScroll(std::string_view name, const glm::dvec3& speed, const Motion& motion, const Loop& loop,
                       std::vector<std::pair<std::string_view, std::string>>& out) {
   if (speed == glm::dvec3(0.0)) return;
+  if (!motion.repeats) {
+    out.emplace_back(
+        name, "'" + std::string(name) +
+                  "' carries its input away, so the loop cannot close; scroll a noise with a period in "
+                  "place of it");
+    return;
+  }
   if (motion.period <= 0.0) {
     out.emplace_back(name,
                      "'" + std::string(name) +

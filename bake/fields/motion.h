@@ -18,6 +18,7 @@ struct Motion {
   double evolve = 0.0;         // turns per second of octave 0; finer ones turn faster
   int64_t octaves = 1;
   double lacunarity = 2.0;
+  bool repeats = true;  // false: the row has no period to give
 };
 
 /// One octave at a time.

@@ -67,6 +67,7 @@ FieldRow ridgedRow();
 FieldRow billowRow();
 FieldRow warpRow();
 FieldRow curlRow();
+FieldRow transformRow();
 FieldRow sphereRow();
 FieldRow ellipsoidRow();
 FieldRow boxRow();

@@ -7,13 +7,13 @@ namespace nephele {
 
 std::span<const FieldRow> fieldTable() {
   static const std::vector<FieldRow> kRows{
-      perlinRow(),        worleyRow(),      perlinWorleyRow(), valueRow(),  fbmRow(),
-      ridgedRow(),        billowRow(),      warpRow(),         curlRow(),   sphereRow(),
-      ellipsoidRow(),     boxRow(),         capsuleRow(),      torusRow(),  planeRow(),
-      meshRow(),          cauliflowerRow(), constantRow(),     linearRow(), exponentialRow(),
-      heightProfileRow(), weatherMapRow(),  remapRow(),        addRow(),    multiplyRow(),
-      minRow(),           maxRow(),         mixRow(),          unionRow(),  intersectionRow(),
-      differenceRow(),    smoothUnionRow()};
+      perlinRow(),       worleyRow(),        perlinWorleyRow(), valueRow(),     fbmRow(),
+      ridgedRow(),       billowRow(),        warpRow(),         transformRow(), curlRow(),
+      sphereRow(),       ellipsoidRow(),     boxRow(),          capsuleRow(),   torusRow(),
+      planeRow(),        meshRow(),          cauliflowerRow(),  constantRow(),  linearRow(),
+      exponentialRow(),  heightProfileRow(), weatherMapRow(),   remapRow(),     addRow(),
+      multiplyRow(),     minRow(),           maxRow(),          mixRow(),       unionRow(),
+      intersectionRow(), differenceRow(),    smoothUnionRow()};
   return kRows;
 }
 

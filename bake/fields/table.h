@@ -53,6 +53,7 @@ struct BandLimitNote {
   int octave = 0;           // from 0
   double cellVoxels = 0.0;  // voxels per noise cell
   double weight = 0.0;      // 0: left out
+  double squeeze = 0.0;     // above 0: a warp, and how many times finer (rms) it makes what it displaces
 };
 
 /// A motion that comes round after `frames` frames, and how far it is.
@@ -118,6 +119,9 @@ struct FieldRow {
   Complaint (*validate)(const Arguments&) = nullptr;
   /// How the row's own noise moves (motion.h); a null function where it has none.
   Motion (*motion)(const Arguments&) = nullptr;
+  /// What the row's child fields are built with, where it is not what the row is built with. Child fields are
+  /// not among the arguments yet.
+  BuildContext (*inner)(const Arguments&, const BuildContext&) = nullptr;
 };
 
 /// All rows, in the order of the docs. A field whose last-named list is all that a recipe gives may be

@@ -251,14 +251,53 @@ TEST(Loop, MeansTheFrameRangeOrANumberOfFrames) {
 TEST(Loop, RefusesWhatCannotCloseAndSaysWhatWould) {
   const std::string keys = "    frames: 1-24\n    loop: true\n";
   const auto complaint = [&](const std::string& density) { return onlyComplaint(looped(keys, density)); };
-  EXPECT_NE(complaint("{ multiply: [sphere, { fbm: { scroll: [1, 0, 0] } }] }").find("6:44: 'scroll' moves a"),
-            std::string::npos);
+  EXPECT_NE(
+      complaint("{ multiply: [sphere, { fbm: { scroll: [1, 0, 0] } }] }").find("6:44: 'scroll' moves a"),
+      std::string::npos);
   EXPECT_NE(complaint("{ perlin: { period: 8, scroll: [0, 0.5, 0] } }").find("give 0, 8 or a multiple"),
             std::string::npos);
   EXPECT_NE(complaint("{ perlin: { evolve: 0.2 } }").find("6:26: 'evolve' of 0.2 does not make half a turn"),
             std::string::npos);
   EXPECT_EQ(complaints(looped(keys, "{ perlin: { period: 8, scroll: [0, 4.1, 0], evolve: -0.6 } }")),
             std::vector<std::string>{});
+}
+
+TEST(Transform, ReadsItsInputAtTheVoxelsOfItsOwnSpace) {
+  // Cells of 1 shrunk to 0.1 along one axis are 1 voxel there, and 100 where they are stretched.
+  const auto octaves = [](const std::string& scale) {
+    const Pipeline pipeline = load("fields: { n: { fbm: { octaves: 1 } } }\n" +
+                                   withDensity("{ transform: { input: n, scale: " + scale + " } }"));
+    std::vector<BandLimitNote> notes;
+    BuildContext context = contextOf(pipeline, pipeline.assets.front());
+    context.notes = &notes;
+    buildField(*pipeline.assets.front().density, context);
+    return notes.empty() ? 1.0 : notes.front().weight;
+  };
+  EXPECT_EQ(octaves("[1, 1, 1]"), 1.0);
+  EXPECT_EQ(octaves("[10, 1, 0.1]"), 0.0);
+  EXPECT_EQ(octaves("[10, 10, 10]"), 1.0);
+}
+
+TEST(Transform, BombsOfTransformsAreRefused) {
+  std::string text = "fields:\n  f00: &f00 { add: [sphere, 1] }\n";
+  for (int n = 1; n <= 40; ++n) {
+    char line[200];
+    std::snprintf(
+        line, sizeof line,
+        "  f%02d: &f%02d { add: [{ transform: { input: *f%02d, scale: [1.%02d, 2, 2] } }, *f%02d] }\n", n, n,
+        n - 1, n, n - 1);
+    text += line;
+  }
+  const Pipeline pipeline = load(text + withDensity("{ multiply: [sphere, *f40] }"));
+  EXPECT_THROW(buildField(*pipeline.assets.front().density, contextOf(pipeline, pipeline.assets.front())),
+               InputError);
+}
+
+TEST(Loop, RefusesATransformThatScrolls) {
+  EXPECT_NE(onlyComplaint(looped("    frames: 1-24\n    loop: true\n",
+                                 "{ transform: { input: sphere, scroll: [1, 0, 0] } }"))
+                .find("'scroll' carries its input away"),
+            std::string::npos);
 }
 
 TEST(Frames, ReadsRangesAndNothingElse) {

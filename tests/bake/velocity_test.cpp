@@ -59,6 +59,13 @@ TEST(Velocity, IsThatOfTheOnlyFieldThatMoves) {
       "0] } }\n",
       {1, 0, 0});
   expectEverywhere("    velocity: true\n    density: { perlin: { evolve: 1 } }\n", {0, 0, 0});
+  expectEverywhere("    velocity: true\n    density: { transform: { input: sphere, scroll: [0, 0, 2] } }\n",
+                   {0, 0, 2});
+  expectEverywhere(
+      "    velocity: true\n    density: { transform: { input: { perlin: { scroll: [1, 0, 0] } }, scale: [3, "
+      "1, 1], "
+      "rotate: [0, 0, 90], scroll: [0, 0, 2] } }\n",
+      {0, 3, 2});
 }
 
 TEST(Velocity, IsThatOfTheLoopWhereThatChangesIt) {
