@@ -12,6 +12,12 @@ namespace {
 
 std::string inQuotes(std::string_view text) { return "'" + std::string(text) + "'"; }
 
+// Fields are built, bounded and evaluated by functions that call each other as deep; names and aliases count
+// too.
+constexpr int kMostNested = 100;
+
+std::string tooDeep() { return "fields are nested deeper than " + std::to_string(kMostNested) + " levels"; }
+
 /// Reads [[x, y], …] with growing x.
 std::optional<Curve> readCurve(const yaml::Node& node, const std::string& what, const Range& range,
                                Diagnostics& out) {
@@ -119,7 +125,13 @@ std::vector<std::string_view> FieldReader::knownNames() const {
 
 FieldSpecPtr FieldReader::read(const yaml::NodePtr& node, const std::string& what) {
   if (const auto found = readNodes_.find(node.get()); found != readNodes_.end()) return found->second;
+  if (depth_ >= kMostNested) {
+    out_.add(node->where, tooDeep());
+    return readNodes_[node.get()] = nullptr;
+  }
+  ++depth_;
   const FieldSpecPtr spec = readNew(*node, what);
+  --depth_;
   readNodes_[node.get()] = spec;
   return spec;
 }
@@ -205,6 +217,12 @@ FieldSpecPtr FieldReader::readRow(const FieldRow& row, const yaml::Node& body, c
     good = false;
   }
   if (!good || !validate(row, *spec, body)) return nullptr;
+  for (const auto& [name, children] : spec->children)
+    for (const FieldSpecPtr& child : children) spec->height = std::max(spec->height, child->height + 1);
+  if (spec->height > kMostNested) {
+    out_.add(where, tooDeep());
+    return nullptr;
+  }
   return spec;
 }
 

@@ -41,6 +41,7 @@ class FieldReader {
   std::string folder_;
   std::map<std::string, yaml::NodePtr> named_;
   std::map<std::string, FieldSpecPtr> readNames_;
+  int depth_ = 0;                  // fields being read, one in the other
   std::vector<std::string> path_;  // named fields being read, outermost first
   std::map<const yaml::Node*, FieldSpecPtr> readNodes_;
 };

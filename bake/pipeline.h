@@ -22,6 +22,7 @@ struct FieldSpec {
   std::map<std::string, Value, std::less<>> values;  // all but child fields
   std::map<std::string, std::vector<std::shared_ptr<const FieldSpec>>, std::less<>>
       children;                                               // field and fields
+  int height = 1;                                             // fields above each other, this one included
   std::map<std::string, SourceLocation, std::less<>> places;  // of the parameters that the recipe gives
 };
 using FieldSpecPtr = std::shared_ptr<const FieldSpec>;

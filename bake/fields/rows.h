@@ -6,9 +6,12 @@
 
 namespace nephele {
 
+/// Cells and displacements beyond these would leave no digit of a place in its cell.
+inline constexpr Range kSizeRange{1e-9, 1e9, false, false};
+
 inline const Parameter kCellSize{
     "cell_size", ParameterType::number, "Edge of one noise cell: the size of its features.", Value{1.0},
-    kPositive,   "world units"};
+    kSizeRange,  "world units"};
 inline const Parameter kSeed{"seed",
                              ParameterType::integer,
                              "Another number, another pattern; mixed with the recipe's seed.",

@@ -177,6 +177,25 @@ TEST(Pipeline, AliasesOfAliasesStayCheap) {
   EXPECT_EQ(recipeHash(pipeline, pipeline.assets.front()).size(), 32u);
 }
 
+TEST(Pipeline, RefusesFieldsNestedTooDeepThroughNames) {
+  // In either order of reading: from the top down, or each upon the last.
+  for (const bool rising : {false, true}) {
+    constexpr int kChain = 10000;
+    std::string text = "fields:\n";
+    for (int n = 0; n < kChain; ++n) {
+      char line[64];
+      const int name = rising ? kChain - n : n;
+      std::snprintf(line, sizeof line, "  n%05d: { add: [n%05d, 1] }\n", name, rising ? name - 1 : name + 1);
+      text += line;
+    }
+    text += rising ? "  n00000: sphere\n" : "  n10000: sphere\n";
+    const auto list = complaints(text + withDensity(rising ? "n00001" : "n00000"));
+    ASSERT_FALSE(list.empty());
+    EXPECT_NE(list.front().find("nested deeper than 100 levels"), std::string::npos) << list.front();
+    EXPECT_LT(list.size(), 300u);
+  }
+}
+
 TEST(RecipeHash, SeesContentAndNotSpelling) {
   const auto hash = [](const std::string& text) {
     const Pipeline pipeline = load(text);

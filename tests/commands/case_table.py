@@ -66,6 +66,10 @@ BAKE = [
     wrong("    density:", "    loop: true\n    density:", "pipeline.yaml:5:5: error: 'loop' needs 'frames'"),
     wrong("    density:", "    frames: 1-4\n    loop: maybe\n    density:", "pipeline.yaml:6:11: error: 'loop'"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "perlin: { evolve: .inf }", "pipeline.yaml:6:25: error: 'evolve'"),
+    wrong("sphere: { radius: 1.0, falloff: 0.5 }", "transform: { input: sphere, scale: [1, 0, 1] }",
+          "pipeline.yaml:6:41: error: 'scale' of 'transform'"),
+    wrong("sphere: { radius: 1.0, falloff: 0.5 }", "warp: { input: sphere, iterations: 9 }",
+          "'iterations' of 'warp' must be 1 to 8, found 9"),
     wrong("    density:", "    velocity: sphere\n    density:", "pipeline.yaml:5:15: error: 'velocity' needs three"),
     # densities that no grid can hold
     wrong("voxel_size: 0.1", "voxel_size: 0.0000001", "pipeline.yaml:", "error:", "voxels"),
