@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
 #endif
     compareFogBall(table);
     compareSparseness(table);
+    compareSplat(table);
     measurePeakMemory(table, NEPHELE_BAKE_PROGRAM);
     if (!json.empty()) table.writeJson(json);
   } catch (const std::exception& error) {

@@ -1,0 +1,203 @@
+// Simulation from frame to frame with checkpoints, and what the splat is told. Depends on particle_run.h,
+// particle_sources.h, base.
+#include "bake/particle_run.h"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "bake/particle_sources.h"
+#include "base/files.h"
+
+namespace nephele {
+namespace {
+
+namespace fs = std::filesystem;
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g%%", 100.0 * share);
+  return text;
+}
+
+}  // namespace
+
+struct ParticleRun::State {
+  const Pipeline& pipeline;
+  const Asset& asset;
+  const ParticleSystem& system;
+  std::string folder;  // of checkpoints
+  std::string key;     // of all that the simulation depends on
+  std::vector<SiteSourcePtr> sources;
+  std::unique_ptr<Simulation> simulation;
+  ParticleView view;
+
+  int upAxis() const { return pipeline.upAxis == 'y' ? 1 : 2; }
+
+  std::unique_ptr<Simulation> fresh() const {
+    return std::make_unique<Simulation>(system, sources,
+                                        SimulationSettings{asset.fps, upAxis(), uint32_t(pipeline.seed)});
+  }
+
+  std::string checkpointOf(int frame) const {
+    char name[64];
+    std::snprintf(name, sizeof name, "%.12s_%04d.state", key.c_str(), frame);
+    return (fs::path(folder) / name).string();
+  }
+
+  uint64_t stepsAt(int frame) const { return uint64_t(system.prewarm + frame) * uint64_t(system.substeps); }
+
+  /// A simulation that is at `frame` or before: the one at hand, the nearest checkpoint, or a new one.
+  void begin(int frame) {
+    const uint64_t wanted = stepsAt(frame);
+    const uint64_t reached = simulation && simulation->stepsDone() <= wanted ? simulation->stepsDone() : 0;
+    if (!simulation || simulation->stepsDone() > wanted) simulation = fresh();
+    for (int at = frame; at >= 0 && stepsAt(at) > reached; --at) {
+      const std::string path = checkpointOf(at);
+      if (!fs::exists(path)) continue;
+      // One that is damaged is as good as none.
+      if (simulation->load(readWhole(path)) && simulation->stepsDone() == stepsAt(at)) return;
+      simulation = fresh();
+    }
+  }
+
+  void writeCheckpoint(int frame) const {
+    const std::string path = checkpointOf(frame);
+    if (fs::exists(path)) return;
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw WorldError("cannot make the folder '" + folder + "': " + error.message());
+    removeLeftovers(folder);
+    // Those of other recipes are of no use to anybody.
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (name.ends_with(".state") && name.substr(0, 12) != key.substr(0, 12))
+        fs::remove(entry.path(), error);
+    }
+    const std::string bytes = simulation->save();
+    writeWhole(path, [&](const std::string& temporary) {
+      std::ofstream out(temporary, std::ios::binary);
+      if (!(out.write(bytes.data(), std::streamsize(bytes.size())) << std::flush))
+        throw WorldError("cannot write '" + path + "'; is the disk full?");
+    });
+  }
+
+  /// Steps to `frame`, leaving checkpoints on the way.
+  void advance(int frame) {
+    const int64_t every = system.checkpointEvery;
+    while (simulation->stepsDone() < stepsAt(frame)) {
+      simulation->step();
+      const uint64_t frames = simulation->stepsDone() / uint64_t(system.substeps);
+      const int64_t at = int64_t(frames) - system.prewarm;
+      if (every > 0 && at > 0 && at % every == 0 && simulation->stepsDone() == stepsAt(int(at)))
+        writeCheckpoint(int(at));
+    }
+  }
+
+  SplatSettings splatSettings(std::optional<int> frame) const {
+    SplatSettings settings;
+    settings.voxelSize = asset.voxelSize;
+    settings.kernel = system.kernel;
+    settings.cutoff = asset.cutoff;
+    settings.half = asset.precision == Precision::half;
+    settings.shutterSeconds = system.shutter / asset.fps;
+    for (const std::string& grid : system.grids) {
+      settings.vel = settings.vel || grid == "vel";
+      settings.temperature = settings.temperature || grid == "temperature";
+      settings.age = settings.age || grid == "age";
+    }
+    if (asset.erosion) {
+      BuildContext context = contextOf(pipeline, asset, frame);
+      context.voxelSize = 0.0;  // it is read in radii of particles: the grid's band limit is not its own
+      settings.erosion = buildField(*asset.erosion, context);
+      settings.erosionAmount = system.erosion;
+    }
+    if (system.hasBox()) settings.box = Box{system.boxMin, system.boxMax};
+    return settings;
+  }
+};
+
+ParticleRun::ParticleRun(const Pipeline& pipeline, const Asset& asset, const std::string& outFolder)
+    : state_(new State{pipeline,
+                       asset,
+                       *asset.particles,
+                       (fs::path(outFolder) / (asset.name + ".checkpoints")).string(),
+                       simulationHash(pipeline, asset),
+                       {},
+                       nullptr,
+                       {}}) {
+  for (size_t n = 0; n < asset.particles->emitters.size(); ++n)
+    state_->sources.push_back(makeSiteSource(asset.particles->emitters[n], asset.particleFiles[n].path));
+}
+
+ParticleRun::~ParticleRun() = default;
+
+ParticleFrame ParticleRun::frame(std::optional<int> frame) {
+  State& s = *state_;
+  const std::string what =
+      "asset '" + s.asset.name + "'" + (frame ? ", frame " + std::to_string(*frame) : "") + ": ";
+  ParticleFrame result;
+  try {
+    auto start = std::chrono::steady_clock::now();
+    s.begin(frame.value_or(0));
+    const uint64_t before = s.simulation->stepsDone();
+    s.advance(frame.value_or(0));
+    result.stepsSimulated = s.simulation->stepsDone() - before;
+    s.view = s.simulation->view();
+    result.secondsSimulate = secondsSince(start);
+    start = std::chrono::steady_clock::now();
+    const ParticleView& v = s.view;
+    result.splatted = splat({v.x, v.y, v.z, v.radius, v.mass, v.vx, v.vy, v.vz, v.temperature, v.age,
+                             s.simulation->particles().id},
+                            s.splatSettings(frame));
+    result.secondsSplat = secondsSince(start);
+  } catch (const SimulationError& error) {
+    throw InputError(s.asset.where, what + error.what());
+  } catch (const SplatError& error) {
+    throw InputError(s.asset.where, what + error.what());
+  }
+  const BirthLedger& births = s.simulation->ledger();
+  const SplatLedger& grid = result.splatted.ledger;
+  MassLedger& m = result.mass;
+  m = {births.emitted,      births.died,     births.emitted - births.died - grid.given,
+       grid.given,          grid.outsideBox, grid.splatted,
+       grid.lostToCutoff,   grid.lostToHalf, grid.stored,
+       births.countEmitted, s.view.size()};
+  const double lost = m.alive > 0.0 ? (m.alive - m.stored) / m.alive : 0.0;
+  if (lost > s.system.massTolerance)
+    throw InputError(s.asset.where, what + "the grid loses " + percent(lost) +
+                                        " of the particles' mass (to the cutoff " +
+                                        percent(m.lostToCutoff / m.alive) + ", to half precision " +
+                                        percent(m.lostToHalf / m.alive) + ", outside the box " +
+                                        percent(m.outsideBox / m.alive) + "), more than mass_tolerance, " +
+                                        percent(s.system.massTolerance));
+  return result;
+}
+
+void ParticleRun::writePointsBeside(const std::string& vdbFile) const {
+  const State& s = *state_;
+  if (s.system.writePoints.empty()) return;
+  const ParticleView& v = s.view;
+  PointSet points;
+  points.x = v.x, points.y = v.y, points.z = v.z;
+  points.vx = v.vx, points.vy = v.vy, points.vz = v.vz;
+  points.radius = v.radius, points.mass = v.mass, points.temperature = v.temperature, points.age = v.age;
+  points.density.resize(v.size());
+  for (size_t n = 0; n < v.size(); ++n)
+    points.density[n] =
+        v.mass[n] / (float(4.0 / 3.0 * std::numbers::pi) * v.radius[n] * v.radius[n] * v.radius[n]);
+  // NAME_0001.vdb → NAME_points_0001.csv
+  const fs::path file(vdbFile);
+  std::string stem = file.stem().string();
+  stem.insert(s.asset.name.size(), "_points");
+  for (const std::string& extension : s.system.writePoints)
+    writePoints((file.parent_path() / (stem + "." + extension)).string(), points);
+}
+
+}  // namespace nephele

@@ -1,0 +1,51 @@
+// The frames of one particle asset: simulated once, restarted from checkpoints, splatted and written. Depends
+// on pipeline, splat, particles, base; no OpenVDB.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "bake/pipeline.h"
+#include "bake/splat.h"
+#include "particles/simulation.h"
+
+namespace nephele {
+
+/// Where a frame's mass went, in density · world units³: emitted = died + faded + alive, alive = outsideBox +
+/// splatted (up to rounding), splatted = stored + lostToCutoff + lostToHalf.
+struct MassLedger {
+  double emitted = 0.0, died = 0.0, faded = 0.0, alive = 0.0;
+  double outsideBox = 0.0, splatted = 0.0, lostToCutoff = 0.0, lostToHalf = 0.0, stored = 0.0;
+  uint64_t countEmitted = 0, countAlive = 0;
+};
+
+struct ParticleFrame {
+  Splatted splatted;
+  MassLedger mass;
+  uint64_t stepsSimulated = 0;  // for this frame; few where a checkpoint or the frame before was there
+  double secondsSimulate = 0.0, secondsSplat = 0.0;
+};
+
+/// Not thread-safe; frames are cheapest in growing order.
+class ParticleRun {
+ public:
+  /// Keeps references to both. Checkpoints lie in `outFolder`/NAME.checkpoints. Throws InputError where a
+  /// file that an emitter names cannot be used.
+  ParticleRun(const Pipeline& pipeline, const Asset& asset, const std::string& outFolder);
+  ~ParticleRun();
+
+  /// The state at `frame` (0 for an asset without frames), splatted. Writes the checkpoints that it passes.
+  /// Throws InputError on particles that cannot be moved or splatted and on a loss beyond the asset's
+  /// mass_tolerance, WorldError where a checkpoint cannot be written.
+  ParticleFrame frame(std::optional<int> frame);
+
+  /// The points of the last frame, as files of points hold them.
+  void writePointsBeside(const std::string& vdbFile) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace nephele
