@@ -114,7 +114,10 @@ struct ParticleRun::State {
     }
     if (asset.erosion) {
       BuildContext context = contextOf(pipeline, asset, frame);
-      context.voxelSize = 0.0;  // it is read in radii of particles: the grid's band limit is not its own
+      // It is read in radii of particles, which the grid's band limit knows nothing of: no octave is left
+      // out.
+      constexpr double kFine = 1e-6;
+      context.voxelSize = kFine;
       settings.erosion = buildField(*asset.erosion, context);
       settings.erosionAmount = system.erosion;
     }

@@ -10,6 +10,7 @@
 #include "bake/build_identity.h"
 #include "bake/field_specs.h"
 #include "bake/fields/motion.h"
+#include "bake/pipeline_particles.h"
 #include "base/hash.h"
 #include "base/version.h"
 #include "base/yaml.h"
@@ -147,7 +148,23 @@ void checkLoop(const Asset& asset, Diagnostics& out) {
     }
 }
 
-Asset readAsset(const yaml::Entry& entry, FieldReader& fields, Diagnostics& out) {
+/// An asset holds a density or particles.
+void readContent(yaml::MapReader& reader, const std::string& what, const std::string& folder,
+                 FieldReader& fields, Asset& asset, Diagnostics& out) {
+  const yaml::NodePtr density = reader.find("density"), particles = reader.find("particles");
+  if (density && particles)
+    out.add(reader.where("particles"), what + " gives both 'density' and 'particles'; give one of them");
+  if (density) asset.density = fields.read(density, "'density'");
+  if (particles) readParticles(*particles, folder, fields, asset, out);
+  if (!density && !particles) out.add(asset.where, what + " needs 'density' or 'particles'");
+  if (!particles) return;
+  for (const char* const key : {"loop", "velocity"})
+    if (reader.has(key))
+      out.add(reader.where(key), std::string("'") + key + "' goes with 'density'",
+              key == std::string("velocity") ? "particles take 'grids: [vel]'" : "");
+}
+
+Asset readAsset(const yaml::Entry& entry, const std::string& folder, FieldReader& fields, Diagnostics& out) {
   Asset asset;
   asset.name = entry.key;
   asset.where = entry.where;
@@ -166,18 +183,14 @@ Asset readAsset(const yaml::Entry& entry, FieldReader& fields, Diagnostics& out)
   asset.cutoff = reader.number("cutoff", asset.cutoff, kNonNegative);
   readFrames(reader, asset, out);
   readLoop(reader, asset, out);
-  const bool tolerance = reader.find("tolerance") != nullptr, particles = reader.find("particles") != nullptr;
+  const bool tolerance = reader.find("tolerance") != nullptr;
   if (tolerance && reader.has("voxel_size"))
     out.add(reader.where("tolerance"), what + " gives both 'voxel_size' and 'tolerance'; give one of them");
   else if (tolerance)
     out.add(reader.where("tolerance"), "'tolerance' is not built yet", "give 'voxel_size'");
   else if (!reader.has("voxel_size"))
     out.add(entry.where, what + " needs 'voxel_size'");
-  if (particles) out.add(reader.where("particles"), "'particles' is not built yet", "give 'density'");
-  if (const yaml::NodePtr density = reader.find("density"))
-    asset.density = fields.read(density, "'density'");
-  else if (!particles)
-    out.add(entry.where, what + " needs 'density'");
+  readContent(reader, what, folder, fields, asset, out);
   readVelocity(reader, asset, fields, out);
   checkLoop(asset, out);
   reader.finish();
@@ -264,13 +277,15 @@ Pipeline loadPipeline(const std::string& path) {
   pipeline.upAxis = reader.choice("up_axis", "z", {"y", "z"}).front();
   pipeline.seed = reader.integer("seed", 0, {-2147483648.0, 4294967295.0, false, false});
   if (const yaml::NodePtr scene = reader.find("scene")) pipeline.scene = readScene(*scene, out);
-  FieldReader fields(out, std::filesystem::path(path).parent_path().string());
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  FieldReader fields(out, folder);
   if (const yaml::NodePtr named = reader.find("fields")) fields.setNamed(*named);
   const yaml::NodePtr assets = reader.find("assets");
   if (!assets || assets->kind != yaml::Kind::map || assets->entries.empty())
     out.add(reader.where("assets"), "the recipe needs 'assets', a map of at least one asset");
   else
-    for (const yaml::Entry& entry : assets->entries) pipeline.assets.push_back(readAsset(entry, fields, out));
+    for (const yaml::Entry& entry : assets->entries)
+      pipeline.assets.push_back(readAsset(entry, folder, fields, out));
   fields.readRest();
   reader.finish();
   out.throwIfAny();
@@ -336,6 +351,12 @@ std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::option
     hasher.value(pipeline.scene->medium->g);
   }
   SpecHasher specs;
+  if (asset.particles) {
+    hashParticles(hasher, asset);
+    hasher.value(frame.value_or(0));
+    if (asset.erosion) hasher.text(specs.digest(*asset.erosion));
+    return hasher.hex();
+  }
   hasher.text(specs.digest(*asset.density));
   hasher.value(int(asset.velocityFromMotion));
   for (const FieldSpecPtr& component : asset.velocityFields) hasher.text(specs.digest(*component));

@@ -1,5 +1,5 @@
 // A recipe, read: YAML → plain structs, every value checked against the field table and knowing
-// file:line:column. Depends on fields, scene, base; no OpenVDB.
+// file:line:column. Depends on fields, particles, scene, base; no OpenVDB.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 
 #include "bake/fields/table.h"
 #include "base/error.h"
+#include "particles/particles.h"
 #include "scene/scene.h"
 
 namespace nephele {
@@ -44,7 +45,10 @@ struct Asset {
   std::optional<FrameRange> frames;
   double fps = 24.0;
   std::optional<int64_t> loopFrames;  // frames after which all motion comes round
-  FieldSpecPtr density;
+  FieldSpecPtr density;               // null where particles make it
+  std::optional<ParticleSystem> particles;
+  std::vector<InputFile> particleFiles;      // of each emitter; empty where it names none
+  FieldSpecPtr erosion;                      // of the particles; null for none
   bool velocityFromMotion = false;           // `velocity: true`
   std::vector<FieldSpecPtr> velocityFields;  // or three fields, x, y and z; else empty
 };
@@ -78,5 +82,9 @@ std::vector<LoopNote> loopNotesOf(const Asset& asset);
 /// frame's place in it), and the program's
 /// version and sources (build_identity.h). Equal recipes written differently give equal hashes.
 std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame = {});
+
+/// The same of all that the motion of an asset's particles depends on, and nothing else: its checkpoints go
+/// by this.
+std::string simulationHash(const Pipeline& pipeline, const Asset& asset);
 
 }  // namespace nephele

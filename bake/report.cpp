@@ -24,6 +24,22 @@ Json loopJson(const BakeRecord& record) {
   return {{"frames", *record.loopFrames}, {"seam", seam}, {"adjusted", adjusted}};
 }
 
+/// emitted = died + faded + alive, alive = outside_box + splatted, splatted = stored + lost_to_cutoff +
+/// lost_to_half.
+Json massJson(const MassLedger& m) {
+  return {{"emitted", m.emitted},
+          {"died", m.died},
+          {"faded", m.faded},
+          {"alive", m.alive},
+          {"outside_box", m.outsideBox},
+          {"splatted", m.splatted},
+          {"lost_to_cutoff", m.lostToCutoff},
+          {"lost_to_half", m.lostToHalf},
+          {"stored", m.stored},
+          {"particles_emitted", m.countEmitted},
+          {"particles_alive", m.countAlive}};
+}
+
 }  // namespace
 
 std::string reportAsJson(const std::vector<BakeRecord>& records) {
@@ -42,7 +58,8 @@ std::string reportAsJson(const std::vector<BakeRecord>& records) {
     entry["peak_bytes"] = record.peakBytes;
     entry["content_hash"] = record.contentHash;
     if (!record.skipped) entry["maximum"] = record.maximum;
-    entry["mass"] = {{"stored", record.mass}};
+    entry["mass"] = record.ledger ? massJson(*record.ledger) : Json{{"stored", record.mass}};
+    if (record.ledger) entry["seconds"]["simulate"] = record.secondsSimulate;
     Json notes = Json::array();
     for (const BandLimitNote& note : record.bandLimit)
       if (note.squeeze > 0.0)

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <mutex>
 
@@ -58,6 +59,7 @@ Provenance provenanceOf(const Pipeline& pipeline, const BakeJob& job, const std:
   provenance.recipeHash = hash;
   provenance.seed = pipeline.seed;
   provenance.frame = job.frame;
+  if (job.asset->particles) provenance.particles = writeParticles(*job.asset->particles);
   if (pipeline.scene && pipeline.scene->medium) {
     provenance.hasMedium = true;
     provenance.sigmaS = pipeline.scene->medium->sigmaS;
@@ -128,6 +130,41 @@ LoopSeam measureSeam(const Pipeline& pipeline, const Asset& asset, const Voxeliz
   return seam;
 }
 
+void warnOf(const std::string& file, int longestAxis, uint64_t voxelsActive) {
+  // Blender's viewport and texture-based viewers allocate the whole box.
+  constexpr int kLongAxis = 2048;
+  if (longestAxis > kLongAxis)
+    std::cerr << "warning: " << file << ": " << longestAxis
+              << " voxels along its longest axis; viewers that make grids dense may run out of memory\n";
+  if (voxelsActive == 0)
+    std::cerr << "warning: " << file << ": no voxel exceeds the cutoff; the file is valid and empty\n";
+}
+
+BakeRecord bakeParticles(const Pipeline& pipeline, const BakeJob& job, const std::string& hash,
+                         ParticleRun& run) {
+  BakeRecord record;
+  const ParticleFrame frame = run.frame(job.frame);
+  record.secondsSimulate = frame.secondsSimulate;
+  record.secondsFill = frame.secondsSplat;
+  record.ledger = frame.mass;
+  auto start = std::chrono::steady_clock::now();
+  record.contentHash = contentHashOf(frame.splatted, "density");
+  record.velocityHash = contentHashOf(frame.splatted, "vel");
+  record.secondsHash = secondsSince(start);
+  start = std::chrono::steady_clock::now();
+  // Points first: the grid's presence says that all of the frame is there.
+  run.writePointsBeside(job.file);
+  record.bytes = writeSplatted(job.file, frame.splatted, provenanceOf(pipeline, job, hash));
+  record.secondsWrite = secondsSince(start);
+  record.voxelsActive = frame.splatted.voxelsActive;
+  record.gridBytes = frame.splatted.gridBytes;
+  record.mass = frame.mass.stored;
+  record.maximum = frame.splatted.maximum;
+  record.peakBytes = peakBytes();
+  warnOf(job.file, frame.splatted.longestAxis, frame.splatted.voxelsActive);
+  return record;
+}
+
 BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::string& hash, bool quiet) {
   BakeRecord record;
   BuildContext context = contextOf(pipeline, *job.asset, job.frame);
@@ -163,13 +200,7 @@ BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::stri
   record.mass = voxelized.mass;
   record.maximum = voxelized.maximum;
   record.peakBytes = peakBytes();
-  // Blender's viewport and texture-based viewers allocate the whole box.
-  constexpr int kLongAxis = 2048;
-  if (voxelized.longestAxis > kLongAxis)
-    std::cerr << "warning: " << job.file << ": " << voxelized.longestAxis
-              << " voxels along its longest axis; viewers that make grids dense may run out of memory\n";
-  if (voxelized.voxelsActive == 0)
-    std::cerr << "warning: " << job.file << ": no voxel exceeds the cutoff; the file is valid and empty\n";
+  warnOf(job.file, voxelized.longestAxis, voxelized.voxelsActive);
   return record;
 }
 
@@ -193,7 +224,15 @@ void tell(const BakeRecord& record) {
   for (const LoopNote& note : record.loopNotes)
     std::cerr << "  " << note.field << ": '" << note.parameter << "' of " << note.asked << " became "
               << note.used << " to close the loop\n";
-  if (!record.skipped && !record.velocityHash.empty())
+  if (record.ledger && !record.skipped) {
+    const MassLedger& m = *record.ledger;
+    std::snprintf(line, sizeof line,
+                  "  %llu particles, simulated in %.2f s; mass %.4g, of which the grid holds %.2f%%\n",
+                  static_cast<unsigned long long>(m.countAlive), record.secondsSimulate, m.alive,
+                  m.alive > 0.0 ? 100.0 * m.stored / m.alive : 100.0);
+    std::cerr << line;
+  }
+  if (!record.skipped && !record.velocityHash.empty() && !record.ledger)
     std::cerr << "  vel: speeds up to " << record.largestSpeed << " world units per second\n";
   if (record.seam)
     std::cerr << "  loop of " << *record.loopFrames << " frames: largest difference "
@@ -247,12 +286,17 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
   makeFolder(options.outFolder);
   removeLeftovers(options.outFolder);
   std::vector<BakeRecord> records;
+  std::map<const Asset*, std::unique_ptr<ParticleRun>> runs;
   for (const BakeJob& job : jobs) {
     const std::string hash = recipeHash(pipeline, *job.asset, job.frame);
     BakeRecord record;
     if (!options.force && isUpToDate(job, hash)) {
       record.skipped = true;
       if (options.describeSkipped) describe(job.file, record);
+    } else if (job.asset->particles) {
+      auto& run = runs[job.asset];
+      if (!run) run = std::make_unique<ParticleRun>(pipeline, *job.asset, options.outFolder);
+      record = bakeParticles(pipeline, job, hash, *run);
     } else {
       record = bakeOne(pipeline, job, hash, options.quiet);
     }

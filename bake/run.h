@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/particle_run.h"
 #include "bake/pipeline.h"
 
 namespace nephele {
@@ -57,6 +58,8 @@ struct BakeRecord {
   std::vector<BandLimitNote> bandLimit;
   std::optional<int64_t> loopFrames;
   std::vector<LoopNote> loopNotes;
+  std::optional<MassLedger> ledger;  // of particles
+  double secondsSimulate = 0.0;
   std::optional<LoopSeam> seam;  // measured with the asset's first frame; none where that was up to date
 };
 

@@ -522,12 +522,13 @@ Splatted splat(const SplatParticles& particles, const SplatSettings& settings) {
   return Splatter(particles, settings).run();
 }
 
-std::string contentHashOf(const Splatted& splatted) {
-  const openvdb::GridCPtrVec& grids = splatted.grids->all;
-  if (grids.size() == 1) return contentHash(*grids.front());
-  Hasher hasher;
-  for (const auto& grid : grids) hasher.text(contentHash(*grid));
-  return hasher.hex();
+std::string contentHashOf(const Splatted& splatted, const std::string& name) {
+  Hasher joined;
+  for (const auto& grid : splatted.grids->all) {
+    if (grid->getName() == name) return contentHash(*grid);
+    if (name.empty()) joined.text(contentHash(*grid));
+  }
+  return name.empty() ? joined.hex() : std::string();
 }
 
 uint64_t writeSplatted(const std::string& path, const Splatted& splatted, const Provenance& provenance) {

@@ -69,8 +69,9 @@ class SplatError : public std::runtime_error {
 /// number of threads and SIMD target. No particles give empty grids. Throws SplatError.
 Splatted splat(const SplatParticles& particles, const SplatSettings& settings);
 
-/// Content hash (volume/vdb_file.h) of density, or of all grids joined where there are more; 32 hex digits.
-std::string contentHashOf(const Splatted& splatted);
+/// Content hash (volume/vdb_file.h) of the grid of that name, or of all grids joined; 32 hex digits, empty
+/// where there is no such grid.
+std::string contentHashOf(const Splatted& splatted, const std::string& grid = {});
 
 /// Writes the grids to `path`, whole or not at all; returns the file's size in bytes. Throws WorldError.
 uint64_t writeSplatted(const std::string& path, const Splatted& splatted, const Provenance& provenance);

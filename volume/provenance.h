@@ -19,6 +19,7 @@ struct Provenance {
   std::array<double, 3> sigmaS{};
   std::array<double, 3> sigmaA{};
   double g = 0.0;
+  std::string particles;  // the recipe's particle block as YAML; empty where a density made the grid
   std::optional<double> mass;  // Σ of stored densities · voxel volume, density units · world units³
 };
 

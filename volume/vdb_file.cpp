@@ -22,6 +22,8 @@ openvdb::MetaMap metadataOf(const Provenance& provenance) {
     metadata.insertMeta("recipe_hash", openvdb::StringMetadata(provenance.recipeHash));
   metadata.insertMeta("seed", openvdb::Int64Metadata(provenance.seed));
   if (provenance.frame) metadata.insertMeta("frame", openvdb::Int32Metadata(*provenance.frame));
+  if (!provenance.particles.empty())
+    metadata.insertMeta("particles", openvdb::StringMetadata(provenance.particles));
   if (provenance.mass) metadata.insertMeta("mass", openvdb::DoubleMetadata(*provenance.mass));
   if (provenance.hasMedium) {
     const auto vector = [](const std::array<double, 3>& a) { return openvdb::Vec3d(a[0], a[1], a[2]); };

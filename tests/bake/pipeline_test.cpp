@@ -148,7 +148,7 @@ TEST(Pipeline, RefusesWhatIsContradictoryOrNotBuilt) {
             std::string::npos);
   EXPECT_NE(onlyComplaint("assets: { a: { tolerance: 3%, density: 1 } }").find("not built yet"),
             std::string::npos);
-  EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, particles: {} } }").find("not built yet"),
+  EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, particles: {} } }").find("at least one of 'emitters'"),
             std::string::npos);
   EXPECT_NE(onlyComplaint("assets: { cloud_9: { voxel_size: 1, density: 1 } }").find("no digit at the end"),
             std::string::npos);

@@ -1,7 +1,7 @@
 """The command-line cases of both programs, one a line: command, exit code, what stderr must hold, and the edit of a
 good recipe that makes the input wrong. Run by cases.py. Depends on nothing.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 GOOD_RECIPE = """\
 up_axis: z
@@ -13,6 +13,16 @@ assets:
 """
 
 
+PARTICLES = """\
+assets:
+  puff:
+    voxel_size: 0.1
+    frames: 1-3
+    particles:
+      emitters: [{ bursts: [[0, 40]], particle_radius: 0.2, velocity: [0, 0, 1] }]
+"""
+
+
 @dataclass
 class Case:
     command: str
@@ -21,6 +31,7 @@ class Case:
     stdout: tuple = ()
     recipe: str = None      # written to pipeline.yaml first
     file_bytes: int = None  # the largest file that the program may write
+    files: dict = field(default_factory=dict)  # name -> text, written first
     note: str = ""
 
 
@@ -37,6 +48,15 @@ def wrong(old, new, *stderr):
     assert old in GOOD_RECIPE, old
     return Case("bake pipeline.yaml", (2,), stderr, recipe=GOOD_RECIPE.replace(old, new), note=repr(new))
 
+
+def wrong_particles(old, new, *stderr, files=None):
+    """The same for the good recipe of particles; `files` are written beside it."""
+    assert old in PARTICLES, old
+    return Case("bake pipeline.yaml", (2,), stderr, recipe=PARTICLES.replace(old, new), files=files or {}, note=repr(new))
+
+
+BURST = "bursts: [[0, 40]]"
+POINTS = "shape: points, file: points.csv"
 
 BAKE = [
     prints("bake pipeline.yaml --dry-run", "out/ball.vdb", recipe=GOOD_RECIPE),
@@ -75,6 +95,29 @@ BAKE = [
     wrong("voxel_size: 0.1", "voxel_size: 0.0000001", "pipeline.yaml:", "error:", "voxels"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "constant: { value: 1 }", "pipeline.yaml:", "error:"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "multiply: [ sphere, 1e6 ]", "pipeline.yaml:", "error:", "65504"),
+    # particles
+    prints("bake pipeline.yaml --dry-run --frames 2-3", "out/puff_0002.vdb\nout/puff_0003.vdb", recipe=PARTICLES),
+    says("bake pipeline.yaml --frames 1-2 --shard 2/2", 0, "puff_0002.vdb", "40 particles", recipe=PARTICLES),
+    says("bake pipeline.yaml --frames 1-1 --out empty", 0, "no voxel exceeds the cutoff; the file is valid and empty",
+         recipe=PARTICLES.replace(BURST, "bursts: [[1, 40]]")),
+    wrong_particles("emitters:", "emiters:", "pipeline.yaml:6:7: error: unknown key 'emiters'", "did you mean 'emitters'?"),
+    wrong_particles("particle_radius: 0.2", "particle_radius: 0", "pipeline.yaml:6:56: error: 'particle_radius' must be greater"),
+    wrong_particles("particle_radius: 0.2", "particle_radius: -1", "'particle_radius' must be greater than 0"),
+    wrong_particles(BURST, BURST + ", life: 0", "'life' must be greater than 0"),
+    wrong_particles(BURST, BURST + ", center: [0, .nan, 0]", "pipeline.yaml:6:", "'center'"),
+    wrong_particles(BURST, BURST + ", center: [0, 1e30, 0]", "pipeline.yaml:6:", "'center'"),
+    wrong_particles(BURST, "rate: 1e9, life: 1", "1e+09 particles at a time, which take 96 GB"),
+    wrong_particles(BURST, "life: 1", "needs 'rate' or 'bursts'"),
+    wrong_particles("particles:", "mass_tolerance: 1\n    particles:", "unknown key 'mass_tolerance'"),
+    wrong_particles("    particles:\n", "    cutoff: 1\n    particles:\n      mass_tolerance: 0.01\n",
+                    "asset 'puff', frame 1: the grid loses", "more than mass_tolerance, 1%"),
+    wrong_particles("    particles:\n", "    density: sphere\n    particles:\n", "gives both 'density' and 'particles'"),
+    wrong_particles(BURST, BURST + ", center: [1e9, 0, 0]", "frame 1: particle 0 at (1e+09", "is beyond voxel 2^30"),
+    wrong_particles(BURST, POINTS, "points.csv: error: no such file"),
+    wrong_particles(BURST, POINTS, "points.csv:1: error: has no column 'z'", files={"points.csv": "x,y\n1,2\n"}),
+    wrong_particles(BURST, POINTS, "points.csv:3: error: has 2 columns", files={"points.csv": "x,y,z\n1,2,3\n1,2\n"}),
+    wrong_particles(BURST, POINTS, "points.csv:2: error: point 0 has the y nan", files={"points.csv": "x,y,z\n1,nan,3\n"}),
+    wrong_particles(BURST, POINTS, "holds no points to emit from", files={"points.csv": "x,y,z\n"}),
     # command lines
     says("bake --no-such-option", 2, "error: ", "--no-such-option"),
     says("bake pipeline.yaml --report nowhere/r.json", 1, "there is no folder"),

@@ -24,6 +24,8 @@ def faults_of(case, folder):
     """Runs one case in `folder`; returns what was wrong as sentences, and what the program said."""
     if case.recipe is not None:
         (folder / "pipeline.yaml").write_text(case.recipe)
+    for file, text in case.files.items():
+        (folder / file).write_text(text)
     before = files_in(folder)
     name, *arguments = shlex.split(case.command)
     done = programs.run([PROGRAMS[name], *arguments], folder, case.file_bytes)

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Every recipe in samples/ loads, and names one asset after its file.
+"""Every recipe in samples/ loads, and names one asset after its file: one file, or frames without a gap.
 
 usage: samples_test.py SAMPLES_FOLDER
 Depends on programs.py.
 """
+import re
 import sys
 from pathlib import Path
 
@@ -15,8 +16,13 @@ def fault_of(recipe):
     done = programs.run([programs.BAKE, str(recipe), "--dry-run", "--out", "out"], recipe.parent)
     if done.returncode != 0:
         return f"exit {done.returncode}: {done.stderr.strip()}"
-    expected = str(Path("out") / f"{recipe.stem}.vdb")
-    return None if done.stdout.split() == [expected] else f"bakes {done.stdout.split()} instead of {expected}"
+    baked = done.stdout.split()
+    first = re.fullmatch(rf"out/{re.escape(recipe.stem)}_(\d{{4}})\.vdb", baked[0] if baked else "")
+    expected = [f"out/{recipe.stem}.vdb"]
+    if first:
+        start = int(first.group(1))
+        expected = [f"out/{recipe.stem}_{frame:04d}.vdb" for frame in range(start, start + len(baked))]
+    return None if baked == expected else f"bakes {baked} instead of {expected}"
 
 
 def main():

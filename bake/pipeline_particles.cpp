@@ -1,0 +1,76 @@
+// The `particles:` of an asset. Depends on particles, fields, base.
+#include "bake/pipeline_particles.h"
+
+#include <filesystem>
+
+#include "base/files.h"
+#include "base/version.h"
+
+namespace nephele {
+namespace {
+
+InputFile inputFile(const std::string& name, const std::string& folder) {
+  if (name.empty()) return {};
+  const std::string path = (std::filesystem::path(folder) / name).string();
+  Hasher hasher;
+  hasher.text(readWhole(path));
+  return {path, hasher.hex()};
+}
+
+/// The system without what changes no content: names of files stand as their contents elsewhere.
+std::string contentOf(ParticleSystem system) {
+  for (Emitter& emitter : system.emitters) emitter.file.clear();
+  system.erosionField = nullptr;
+  system.checkpointEvery = 0;
+  system.writePoints.clear();
+  return writeParticles(system);
+}
+
+void hashFiles(Hasher& hasher, const Asset& asset) {
+  for (const InputFile& file : asset.particleFiles) hasher.text(file.contentHash);
+  hasher.value(asset.fps);
+}
+
+}  // namespace
+
+void readParticles(const yaml::Node& node, const std::string& folder, FieldReader& fields, Asset& asset,
+                   Diagnostics& out) {
+  asset.particles = readParticles(node, out);
+  for (const Emitter& emitter : asset.particles->emitters) {
+    try {
+      asset.particleFiles.push_back(inputFile(emitter.file, folder));
+    } catch (const InputError& error) {
+      for (const Diagnostic& d : error.diagnostics()) out.add(d.where, d.sentence, d.hint);
+    }
+  }
+  if (asset.particles->erosionField)
+    asset.erosion = fields.read(asset.particles->erosionField, "'field' of 'erosion'");
+}
+
+void hashParticles(Hasher& hasher, const Asset& asset) {
+  hasher.text(contentOf(*asset.particles));
+  hashFiles(hasher, asset);
+}
+
+std::string simulationHash(const Pipeline& pipeline, const Asset& asset) {
+  // The splat's keys, and the curves that are read when particles are looked at, move nothing.
+  ParticleSystem moving = *asset.particles;
+  const ParticleSystem plain;
+  moving.kernel = plain.kernel;
+  moving.shutter = plain.shutter;
+  moving.erosion = plain.erosion;
+  moving.grids = plain.grids;
+  moving.massTolerance = plain.massTolerance;
+  moving.boxMin = moving.boxMax = plain.boxMin;
+  moving.sizeOverLife.clear();
+  moving.densityOverLife.clear();
+  Hasher hasher;
+  hasher.text(programVersion());
+  hasher.value(pipeline.upAxis);
+  hasher.value(pipeline.seed);
+  hasher.text(contentOf(std::move(moving)));
+  hashFiles(hasher, asset);
+  return hasher.hex();
+}
+
+}  // namespace nephele

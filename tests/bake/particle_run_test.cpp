@@ -1,0 +1,207 @@
+// Sequences of particles: restarts and shards change nothing, ledgers add up, points go out and come in.
+#include "bake/particle_run.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "bake/particle_sources.h"
+#include "bake/run.h"
+#include "tests/scratch_folder.h"
+#include "volume/info.h"
+
+namespace nephele::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRecipe = R"(
+seed: 5
+assets:
+  puff:
+    voxel_size: 0.1
+    frames: 1-12
+    particles:
+      emitters: [{ rate: 900, particle_radius: 0.15, velocity: [0, 0, 1], spread: 0.4, life: 0.3, life_variation: 0.5, temperature: 1 }]
+      forces: { drag: 1, buoyancy: 2, curl_noise: { speed: 0.5, cell_size: 0.4 }, neighbours: { radius: 0.1, separation: 2 } }
+      density_over_life: [[0.5, 1], [1, 0.2]]
+      checkpoint_every: 4
+      grids: [vel, age]
+)";
+
+std::vector<BakeRecord> bake(const std::string& recipe, const BakeOptions& options) {
+  return bakeAll(loadPipeline(recipe), options);
+}
+
+BakeOptions into(const std::string& folder) {
+  BakeOptions options;
+  options.outFolder = folder;
+  options.quiet = true;
+  return options;
+}
+
+std::map<int, std::string> hashesOf(const std::vector<BakeRecord>& records) {
+  std::map<int, std::string> hashes;
+  for (const BakeRecord& record : records) hashes[*record.frame] = record.contentHash + record.velocityHash;
+  return hashes;
+}
+
+TEST(ParticleRun, RestartsAndShardsGiveTheSameFrames) {
+  const ScratchFolder folder;
+  const std::string recipe = folder.write("p.yaml", kRecipe);
+  const auto whole = hashesOf(bake(recipe, into(folder.file("whole"))));
+  ASSERT_EQ(whole.size(), 12u);
+  EXPECT_NE(whole.at(3), whole.at(4));
+  // Two shards, and one frame alone out of the checkpoints of the first run.
+  for (const int index : {1, 2}) {
+    BakeOptions options = into(folder.file("shards"));
+    options.shard = {index, 2};
+    for (const auto& [frame, hash] : hashesOf(bake(recipe, options)))
+      EXPECT_EQ(hash, whole.at(frame)) << frame;
+  }
+  const Pipeline pipeline = loadPipeline(recipe);
+  ParticleRun restarted(pipeline, pipeline.assets[0], folder.file("whole"));
+  const ParticleFrame tenth = restarted.frame(10);
+  EXPECT_EQ(tenth.stepsSimulated, 4u) << "two frames of two steps since the checkpoint of frame 8";
+  EXPECT_EQ(contentHashOf(tenth.splatted, "density") + contentHashOf(tenth.splatted, "vel"), whole.at(10));
+  ParticleRun anew(pipeline, pipeline.assets[0], folder.file("elsewhere"));
+  EXPECT_EQ(anew.frame(10).stepsSimulated, 20u);
+  // Another recipe does not take them.
+  std::string other = kRecipe;
+  other.replace(other.find("drag: 1"), 7, "drag: 2");
+  const Pipeline second = loadPipeline(folder.write("q.yaml", other));
+  EXPECT_EQ(ParticleRun(second, second.assets[0], folder.file("whole")).frame(10).stepsSimulated, 20u);
+}
+
+TEST(ParticleRun, ADamagedCheckpointIsAsGoodAsNone) {
+  const ScratchFolder folder;
+  const std::string recipe = folder.write("p.yaml", kRecipe);
+  const auto whole = hashesOf(bake(recipe, into(folder.file("out"))));
+  for (const auto& entry : fs::directory_iterator(folder.file("out") + "/puff.checkpoints"))
+    fs::resize_file(entry.path(), fs::file_size(entry.path()) - 1);
+  const Pipeline pipeline = loadPipeline(recipe);
+  const ParticleFrame frame = ParticleRun(pipeline, pipeline.assets[0], folder.file("out")).frame(10);
+  EXPECT_EQ(frame.stepsSimulated, 20u);
+  EXPECT_EQ(contentHashOf(frame.splatted, "density") + contentHashOf(frame.splatted, "vel"), whole.at(10));
+}
+
+TEST(ParticleRun, LedgerAddsUp) {
+  const ScratchFolder folder;
+  for (const BakeRecord& record : bake(folder.write("p.yaml", kRecipe), into(folder.file("out")))) {
+    ASSERT_TRUE(record.ledger);
+    const MassLedger& m = *record.ledger;
+    EXPECT_NEAR(m.emitted, m.died + m.faded + m.alive, 1e-12 * m.emitted);
+    EXPECT_NEAR(m.alive, m.splatted, 1e-5 * m.alive);
+    EXPECT_NEAR(m.splatted, m.stored + m.lostToCutoff + m.lostToHalf, 1e-12 * m.emitted);
+    EXPECT_GT(m.lostToCutoff, 0.0);
+    const FileInfo info = inspectFile(record.file);
+    EXPECT_NEAR(std::stod(info.metadata.at("mass")), m.stored, 1e-12);
+    EXPECT_NE(info.metadata.at("particles").find("rate: [[0, 900]]"), std::string::npos);
+    EXPECT_EQ(info.grids.size(), 3u);
+  }
+  // 900 a second until frame 12 of 24 a second.
+  EXPECT_EQ(bake(folder.file("p.yaml"), into(folder.file("again"))).back().ledger->countEmitted, 450u);
+}
+
+TEST(ParticleRun, IsUpToDateUntilTheRecipeChanges) {
+  const ScratchFolder folder;
+  const std::string recipe = folder.write("p.yaml", kRecipe);
+  bake(recipe, into(folder.file("out")));
+  for (const BakeRecord& record : bake(recipe, into(folder.file("out")))) EXPECT_TRUE(record.skipped);
+  std::string other = kRecipe;
+  other.replace(other.find("drag: 1"), 7, "drag: 2");
+  folder.write("p.yaml", other);
+  for (const BakeRecord& record : bake(recipe, into(folder.file("out")))) EXPECT_FALSE(record.skipped);
+}
+
+PointSet somePoints() {
+  PointSet p;
+  uint32_t state = 9;
+  for (int n = 0; n < 500; ++n) {
+    p.x.push_back(motion::nextUniform(state)), p.y.push_back(motion::nextUniform(state));
+    p.z.push_back(motion::nextUniform(state)), p.radius.push_back(0.1f + 0.1f * motion::nextUniform(state));
+    p.vx.push_back(1.0f), p.vy.push_back(0.0f), p.vz.push_back(motion::nextUniform(state));
+    p.density.push_back(2.0f);
+  }
+  return p;
+}
+
+TEST(Points, GoThroughEveryKindOfFile) {
+  const ScratchFolder folder;
+  const PointSet points = somePoints();
+  double speeds = 0.0, radii = 0.0;
+  for (size_t n = 0; n < points.size(); ++n)
+    speeds += double(points.vz[n]), radii += double(points.radius[n]);
+  for (const char* const name : {"p.csv", "p.ply", "p.vdb"}) {
+    writePoints(folder.file(name), points);
+    const PointSet read = readPoints(folder.file(name));
+    ASSERT_EQ(read.size(), points.size()) << name;
+    ASSERT_EQ(read.vz.size(), points.size()) << name;
+    double sums[3] = {};
+    for (size_t n = 0; n < read.size(); ++n) {
+      sums[0] += double(read.vz[n]);
+      sums[1] += double(read.radius[n]);
+      sums[2] += double(read.density[n]);
+      // A .vdb sorts them: each is there, whichever its number.
+      float least = 1e9f;
+      for (size_t k = 0; k < points.size(); ++k)
+        least = std::min(least, std::abs(read.x[n] - points.x[k]) + std::abs(read.y[n] - points.y[k]) +
+                                    std::abs(read.z[n] - points.z[k]) + std::abs(read.vz[n] - points.vz[k]));
+      ASSERT_LT(least, 1e-6f) << name;
+    }
+    EXPECT_NEAR(sums[0], speeds, 1e-3) << name;
+    EXPECT_NEAR(sums[1], radii, 1e-3) << name;
+    EXPECT_EQ(sums[2], 1000.0) << name;
+  }
+}
+
+TEST(Points, AreEmittedAsTheyStand) {
+  const ScratchFolder folder;
+  writePoints(folder.file("p.ply"), somePoints());
+  const std::string recipe = folder.write("p.yaml", R"(
+assets:
+  cast:
+    voxel_size: 0.05
+    particles: { emitters: [{ shape: points, file: p.ply, scale: 2 }], write_points: [csv, vdb] }
+)");
+  const auto records = bake(recipe, into(folder.file("out")));
+  EXPECT_EQ(records.at(0).ledger->countAlive, 500u);
+  for (const char* const name : {"out/cast_points.csv", "out/cast_points.vdb"}) {
+    const PointSet read = readPoints(folder.file(name));
+    ASSERT_EQ(read.size(), 500u) << name;
+    double x = 0.0, expected = 0.0;
+    for (const float v : read.x) x += double(v);
+    for (const float v : somePoints().x) expected += 2.0 * double(v);
+    EXPECT_NEAR(x, expected, 1e-3) << name;
+  }
+}
+
+TEST(Points, MeshesEmitFromTheirSurfaceAndTheirInside) {
+  const ScratchFolder folder;
+  // A tetrahedron with corners at 0 and on the axes at 1.
+  const std::string mesh =
+      folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  Emitter emitter;
+  emitter.shape = EmitterShape::mesh;
+  emitter.scale = 2.0;
+  constexpr int kCount = 4000;
+  for (const bool surface : {false, true}) {
+    emitter.surface = surface;
+    const SiteSourcePtr source = makeSiteSource(emitter, mesh);
+    double sum = 0.0;
+    for (uint64_t n = 0; n < kCount; ++n) {
+      const Site site = source->site(n, 7);
+      const glm::vec3 p = 0.5f * site.position;
+      const float least = std::min({p.x, p.y, p.z, 1.0f - p.x - p.y - p.z});
+      ASSERT_GE(least, -1e-5f);
+      ASSERT_LE(least, surface ? 1e-5f : 1.0f);
+      sum += double(p.x);
+    }
+    // The mean of x: 1/4 inside; on the faces 1/3 but for x = 0, weighted by their areas ½, ½, ½ and √3/2.
+    const double slanted = std::sqrt(3.0) / 2.0;
+    EXPECT_NEAR(sum / kCount, surface ? (1.0 + slanted) / 3.0 / (1.5 + slanted) : 0.25, 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace nephele::test
