@@ -23,12 +23,15 @@ void parseSize(const std::string& option, const std::string& text, int& width, i
     throw InputError({}, option + " '" + text + "' should be WIDTHxHEIGHT in pixels, as in 960x540");
 }
 
-/// "1-48" → its two numbers, at least 0. Throws InputError.
+/// "1-48" → its two numbers, at least 0; "7" is "7-7". Throws InputError.
 std::pair<int, int> parseFrames(const std::string& text) {
-  int first = 0, last = 0, used = 0;
-  const int read = std::sscanf(text.c_str(), "%8d-%8d%n", &first, &last, &used);
-  if (read != 2 || static_cast<size_t>(used) != text.size() || first < 0 || last < first)
-    throw InputError({}, "--frames '" + text + "' should be FIRST-LAST, as in 1-48");
+  int first = 0, last = 0, used = 0, usedByOne = 0;
+  const int read = std::sscanf(text.c_str(), "%8d%n-%8d%n", &first, &usedByOne, &last, &used);
+  const bool one = read == 1 && static_cast<size_t>(usedByOne) == text.size();
+  const bool two = read == 2 && static_cast<size_t>(used) == text.size();
+  if (one) last = first;
+  if (!(one || two) || first < 0 || last < first)
+    throw InputError({}, "--frames '" + text + "' should be FIRST-LAST or one frame, as in 1-48 or 7");
   return {first, last};
 }
 
@@ -70,7 +73,7 @@ void addRenderOptions(CLI::App& app, Arguments& a) {
   app.add_option("--filter", a.filter, "How densities are read between samples")
       ->capture_default_str()
       ->check(CLI::IsMember({"exact", "hardware"}));
-  app.add_option("--frames", a.frames, "Render frames A-B, both included, to OUT_####");
+  app.add_option("--frames", a.frames, "Render frames A-B, both included, or one frame, to OUT_####");
 }
 
 void addChartOptions(CLI::App& app, Arguments& a) {

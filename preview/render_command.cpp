@@ -136,8 +136,9 @@ class Sequence {
     totals_.cost.gpuBytes = std::max(totals_.cost.gpuBytes, cost.gpuBytes);
   }
 
+  /// Writes the stats of the frames that were rendered, where there are any.
   void finish() const {
-    if (!options_.stats.empty()) writeStats(options_.stats, totals_, *method_, *view_);
+    if (!options_.stats.empty() && totals_.frames > 0) writeStats(options_.stats, totals_, *method_, *view_);
   }
 
  private:
@@ -258,6 +259,28 @@ double exposureFor(const RenderOptions& options, const Picture& picture) {
   return exposureEv;
 }
 
+namespace {
+
+/// Renders all frames. One that cannot be read is told of, and the others are rendered all the same. Returns
+/// how many there were of those.
+int renderFrames(const RenderOptions& options, Sequence& sequence) {
+  const auto [first, last] = *options.frames;
+  framePath(options.file, first);  // a name without a number is wrong for all
+  int bad = 0;
+  for (int frame = first; frame <= last; ++frame) {
+    try {
+      sequence.frame(framePath(options.file, frame), frameOutput(options.out, frame));
+    } catch (const InputError& error) {
+      ++bad;
+      std::cerr << error.what() << '\n';
+    }
+  }
+  if (bad > 0) std::cerr << bad << " of " << last - first + 1 << " frames could not be rendered\n";
+  return bad;
+}
+
+}  // namespace
+
 int renderCommand(const RenderOptions& options) {
   checkOptions(options);
   requireWritable(options.out);
@@ -265,14 +288,13 @@ int renderCommand(const RenderOptions& options) {
   const std::string folder = std::filesystem::path(options.out).parent_path().string();
   removeLeftovers(folder.empty() ? "." : folder);
   Sequence sequence(options);
-  if (options.frames) {
-    for (int frame = options.frames->first; frame <= options.frames->second; ++frame)
-      sequence.frame(framePath(options.file, frame), frameOutput(options.out, frame));
-  } else {
+  int bad = 0;
+  if (options.frames)
+    bad = renderFrames(options, sequence);
+  else
     sequence.frame(options.file, options.out);
-  }
   sequence.finish();
-  return kExitDone;
+  return bad > 0 ? kExitInput : kExitDone;
 }
 
 int compareCommand(const std::string& picture, const std::string& reference, std::optional<double> tolerance,

@@ -63,7 +63,8 @@ double chooseExposure(const Picture& picture);
 /// told on stderr.
 double exposureFor(const RenderOptions& options, const Picture& picture);
 
-/// Renders and writes. Throws InputError or WorldError. Returns the exit code 0.
+/// Renders and writes. Throws InputError or WorldError. Of a sequence, frames that cannot be read are told of
+/// on stderr and left out. Returns the exit code: 0, or 2 where a frame was left out.
 int renderCommand(const RenderOptions& options);
 
 /// Prints the comparison on stdout; returns 3 where `tolerance` is given and the relative RMSE exceeds it,

@@ -8,7 +8,7 @@
 namespace nephele {
 
 /// `render` says what is shown and how; its size, samples and output do not count here. Its stats are written
-/// when a file has been shown for the first time, and at the end.
+/// when a file is shown, when a picture's noise is first known, and at the end.
 struct AppOptions {
   RenderOptions render;
   int width = 1280;

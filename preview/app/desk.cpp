@@ -99,6 +99,8 @@ LaneRequest Desk::request(const Settings& settings) const {
 
 void Desk::restart() {
   window_.framebufferSize(width_, height_);
+  ++restarts_;
+  statsKnown_ = false;
   if (width_ < 1 || height_ < 1) return;
   viewer_.setGoal(state_.goal);
   viewer_.restart(Side::edited, request(state_.settings));
@@ -120,12 +122,15 @@ bool Desk::work(double seconds) {
   int width = 0, height = 0;
   window_.framebufferSize(width, height);
   if (width != width_ || height != height_) restart();
+  bool more = false;
   try {
-    return viewer_.work(seconds);
+    more = viewer_.work(seconds);
   } catch (const InputError& error) {  // a setting or a size that cannot be drawn: the window goes on
     say(error.what());
-    return false;
   }
+  const bool known = !more || viewer_.stats(Side::edited).noise > 0.0;
+  if (known && !std::exchange(statsKnown_, known)) writeStats();
+  return more;
 }
 
 bool Desk::advance(double seconds) {
@@ -194,7 +199,8 @@ void Desk::writeStats() const {
   if (options_.render.stats.empty()) return;
   const GlCounts counts = glCounts();
   const LaneStats lane = viewer_.stats(Side::edited);
-  const nlohmann::ordered_json stats{{"ms_per_frame", lane.sampleMilliseconds},
+  const nlohmann::ordered_json stats{{"pictures_begun", restarts_},
+                                     {"ms_per_frame", lane.sampleMilliseconds},
                                      {"samples", lane.samples},
                                      {"samples_per_pixel", lane.densitySamplesPerPixel},
                                      {"noise", lane.noise},

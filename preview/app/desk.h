@@ -48,7 +48,8 @@ class Desk {
 
   UiState& state() { return state_; }
   UiFacts facts() const;
-  /// To the file of --stats, where one is asked for.
+  /// To the file of --stats, where one is asked for: when a file is shown, when a picture's noise is first
+  /// known, and at the end.
   void writeStats() const;
 
  private:
@@ -94,6 +95,8 @@ class Desk {
   double noticeSeconds_ = 0.0;
   double frameSeconds_ = 0.0;  // smoothed, while things move
   int width_ = 0, height_ = 0;
+  uint64_t restarts_ = 0;
+  bool statsKnown_ = false;  // for the picture that is being drawn
 };
 
 }  // namespace nephele

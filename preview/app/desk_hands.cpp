@@ -213,7 +213,7 @@ void Desk::picture(const std::string& extension) {
 
 void Desk::takeWishes(const UiWishes& wishes, const Settings& before, bool held) {
   if (wishes.settings) change(before);
-  if (!held) history_.rest();
+  if (!held && !window_.dragging()) history_.rest();
   if (wishes.picture) restart();
   for (const Action action : wishes.actions) act(action);
   if (wishes.grid) document_.chooseGrid(*wishes.grid);

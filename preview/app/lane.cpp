@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kQuickSecondsLow = 0.012, kQuickSecondsHigh = 0.035;
 constexpr int kMostDivisor = 8;
 constexpr double kQuickStepFactor = 3.0;
-constexpr unsigned kFirstCheck = 8;            // samples before noise is measured: fewer tell too little
+constexpr unsigned kFirstCheck = 4;  // samples before noise is measured: two halves of fewer tell too little
 constexpr unsigned kSamplesWithoutNoise = 16;  // a view without random numbers needs smooth edges alone
 
 double secondsSince(Clock::time_point start) {
@@ -50,6 +50,7 @@ void Lane::restart(const LaneRequest& request) {
   request_ = request;
   if (const double top = rowOf(request.show).top; top > 0.0) stats_.scale = top;
   quickNeeded_ = true;
+  stats_.noise = 0.0;
   accumulator_.reset();
 }
 

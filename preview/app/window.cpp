@@ -43,6 +43,7 @@ Window::Window(int width, int height, const std::string& title) {
   glfwSwapInterval(1);
   loadGl(reinterpret_cast<GLADloadfunc>(glfwGetProcAddress));
   listen();
+  glfwGetCursorPos(window_, &lastX_, &lastY_);
 }
 
 void Window::listen() {
@@ -98,7 +99,7 @@ void Window::onButton(int button, int action, int modifiers) {
   }
   if (panelWantsMouse) return;
   const bool shift = (modifiers & GLFW_MOD_SHIFT) != 0, control = (modifiers & GLFW_MOD_CONTROL) != 0;
-  glfwGetCursorPos(window_, &lastX_, &lastY_);
+  // lastX_ and lastY_ are where the press happened; asked now, GLFW would tell where the cursor is by now.
   if (button == GLFW_MOUSE_BUTTON_LEFT) {
     drag_ = onDivider(lastX_) ? Dragging::divider
             : control         ? Dragging::sun

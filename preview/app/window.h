@@ -63,6 +63,8 @@ class Window {
   /// Whether the right button is held, which turns keys into flight; and where they push.
   bool flying() const { return drag_ == Dragging::look; }
   Flight flight() const;
+  /// Whether a drag goes on, of any kind.
+  bool dragging() const { return drag_ != Dragging::none; }
   GLFWwindow* handle() const { return window_; }
 
   /// Set before poll: events that the panel takes do not move the camera.

@@ -21,6 +21,7 @@ def make_files(folder):
     programs.run_well([programs.BAKE, "small.yaml", "--out", "baked"], folder)
     good = (folder / "baked" / "ball.vdb").read_bytes()
     (folder / "good.vdb").write_bytes(good)
+    (folder / "good_0001.vdb").write_bytes(good)
     (folder / "cut_in_data.vdb").write_bytes(good[: len(good) * 2 // 3])
     (folder / "cut_by_one.vdb").write_bytes(good[:-1])
     (folder / "cut_in_header.vdb").write_bytes(good[:40])

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Soaks the previewer's window: reloads, resizes, moves, views and splits for a while, then holds GL objects and memory flat.
+
+usage: soak.py PREVIEW MAKE_BALL [MINUTES]     default 10; exit 1 where something grows, 77: left out
+Depends on window.py.
+"""
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from window import Window, under_xvfb
+
+DEFAULT_MINUTES = 10.0
+SECONDS_A_MINUTE = 60.0
+SIZES = ((480, 320), (320, 240), (1, 1), (640, 360))
+RADII = (20, 14, 18)
+ALLOWED_GROWTH = 1.05  # of the memory between the first quarter's highest and the last quarter's highest
+ALLOWED_MEBIBYTES = 16.0  # or so much: allocators keep some
+
+
+def resident_mebibytes(process):
+    for line in Path(f"/proc/{process.pid}/status").read_text().splitlines():
+        if line.startswith("VmRSS:"):
+            return int(line.split()[1]) / 1024
+    return 0.0
+
+
+def make_ball(program, path, radius):
+    partial = path.with_suffix(".partial")
+    subprocess.run([program, str(partial), "ball", str(radius)], check=True)
+    partial.rename(path)
+
+
+class Soak:
+    def __init__(self, preview, make, folder):
+        self.make, self.folder = make, folder
+        self.file = folder / "ball.vdb"
+        make_ball(make, self.file, RADII[0])
+        self.window = Window(preview, folder, "ball.vdb", size=SIZES[0])
+        self.rounds = 0
+        self.memory, self.objects = [], []
+
+    def round(self):
+        """One of everything, back to where it began; then a reading of what is held."""
+        w = self.window
+        w.drag((0.7, 0.4), (0.5, 0.5))
+        w.drag((0.7, 0.4), (0.6, 0.3), modifier="ctrl")
+        w.key("v", "c", "x", "c", "shift+v", "l", "ctrl+z")
+        for size in SIZES:
+            w.resize(*size)
+            time.sleep(0.1)
+        w.resize(*w.size)
+        self.rounds += 1
+        make_ball(self.make, self.file, RADII[self.rounds % len(RADII)])
+        w.until_said("read ball.vdb again", times=self.rounds)
+        self.memory.append(resident_mebibytes(w.process))
+        self.objects.append(w.stats()["gl_objects_alive"])
+
+    def verdict(self):
+        quarter = max(1, len(self.memory) // 4)
+        first, last = max(self.memory[:quarter]), max(self.memory[-quarter:])
+        made = self.window.stats()["gl_objects_made"]
+        print(f"{self.rounds} rounds; resident {first:.1f} MiB in the first quarter, {last:.1f} MiB in the last; "
+              f"GL objects {max(self.objects[:quarter])} then {max(self.objects[-quarter:])}, {made} made in all")
+        grown = last > first * ALLOWED_GROWTH and last > first + ALLOWED_MEBIBYTES
+        leaked = max(self.objects[-quarter:]) > max(self.objects[:quarter])
+        if grown:
+            print("FAILED: memory grows")
+        if leaked:
+            print("FAILED: GL objects grow")
+        return grown or leaked
+
+
+def main():
+    under_xvfb()
+    preview, make = sys.argv[1:3]
+    minutes = float(sys.argv[3]) if len(sys.argv) > 3 else DEFAULT_MINUTES
+    with tempfile.TemporaryDirectory() as name:
+        soak = Soak(preview, make, Path(name))
+        end = time.monotonic() + minutes * SECONDS_A_MINUTE
+        soak.round()
+        soak.memory.clear()  # the first round compiles shaders
+        soak.objects.clear()
+        soak.round()
+        while time.monotonic() < end:
+            soak.round()
+        failed = soak.verdict()
+        code = soak.window.end()
+        if code != 0:
+            print(f"FAILED: the window ended with {code}: {soak.window.said()[-2000:]}")
+    return 1 if failed or code != 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

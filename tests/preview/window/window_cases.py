@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+"""Drives the previewer's window as hands would and reads its pictures: drags, keys, drops, reloads, sequences, sizes, closing.
+
+usage: window_cases.py PREVIEW MAKE_BALL [CASE...]     each case is a function below; exit 77: left out
+Depends on window.py.
+"""
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from window import ALIKE, CHANGED, Window, under_xvfb
+
+PREVIEW, MAKE_BALL = sys.argv[1:3]
+OPENED = []  # windows of the case that runs, to be ended with it
+
+
+def make_ball(path, *words):
+    """Written as a bake writes: whole under another name, then renamed."""
+    partial = path.with_suffix(".partial")
+    subprocess.run([MAKE_BALL, str(partial), *map(str, words)], check=True)
+    partial.rename(path)
+
+
+def open_window(folder, file, *options, **more):
+    window = Window(PREVIEW, folder, file, *options, **more)
+    OPENED.append(window)
+    window.key("h")  # pictures without the panel
+    window.until(lambda: window.picture() is not None, "the window cannot be read")
+    time.sleep(0.5)
+    return window
+
+
+def camera_moves_and_comes_back(folder):
+    make_ball(folder / "ball.vdb")
+    w = open_window(folder, "ball.vdb")
+    first = w.picture()
+    w.key("ctrl+1")
+    w.until_said("bookmark 1 is set")
+    w.drag((0.6, 0.5), (0.3, 0.6))
+    orbited = w.settled()
+    assert orbited.difference(first) > CHANGED, "the drag did not orbit"
+    w.drag((0.6, 0.5), (0.8, 0.5), button=2)
+    panned = w.settled()
+    assert panned.difference(orbited) > CHANGED, "the middle drag did not pan"
+    w.drag((0.6, 0.5), (0.55, 0.5), button=3)
+    assert w.settled().difference(panned) > CHANGED, "the right drag did not look around"
+    w.key("2")
+    w.until_said("bookmark 2 is not set")
+    w.key("1")
+    assert w.settled().difference(first) < ALIKE, "the bookmark does not come back"
+    w.double_click((0.5, 0.62))
+    focused = w.settled()
+    assert focused.difference(first) > CHANGED, "the double click focused on nothing"
+    w.key("Home")
+    assert w.settled().difference(first) < ALIKE, "Home does not frame the cloud"
+    assert w.end() == 0
+
+
+def sun_turns_and_undo_turns_it_back(folder):
+    make_ball(folder / "ball.vdb")
+    w = open_window(folder, "ball.vdb")
+    first = w.picture()
+    w.drag((0.3, 0.5), (0.8, 0.6), modifier="ctrl", steps=12)
+    turned = w.settled()
+    assert turned.difference(first) > CHANGED, "the sun did not turn"
+    w.key("ctrl+z")  # the whole drag is one step
+    assert w.settled().difference(first) < ALIKE, "undo does not bring the sun back"
+    w.key("ctrl+shift+z")
+    assert w.settled().difference(turned) < ALIKE, "redo does not turn it again"
+    w.key("ctrl+z", "ctrl+z")
+    w.until_said("nothing to undo")
+    w.key("l")
+    w.until_said("look: report")
+    assert w.settled().difference(first) > CHANGED, "the looks do not differ"
+    assert w.end() == 0
+
+
+def views_and_split(folder):
+    make_ball(folder / "ball.vdb")
+    w = open_window(folder, "ball.vdb")
+    pictures = [w.picture()]
+    for view in ("transmittance", "optical depth", "density slice", "steps per pixel", "skipped share"):
+        w.key("v")
+        w.until_said(f"view: {view}")
+        pictures.append(w.settled())
+        assert all(pictures[-1].difference(p) > CHANGED for p in pictures[:-1]), f"{view} looks like another view"
+    w.key("v")
+    w.until_said("view: radiance")
+    first = w.settled()
+    w.key("c")
+    w.drag((0.75, 0.3), (0.95, 0.45), modifier="ctrl")  # a sun of its own for the right side
+    split = w.settled()
+    assert split.difference(first, right=0.45) < ALIKE, "the left side is not kept"
+    assert split.difference(first, left=0.55) > CHANGED, "the right side does not follow"
+    w.drag((0.5, 0.9), (0.9, 0.9))  # the divider
+    w.until_like(first, right=0.85)
+    w.drag((0.9, 0.9), (0.5, 0.9))
+    w.key("x")
+    w.settled()
+    w.until_like(first, left=0.55)
+    w.until_unlike(first, right=0.45)
+    assert w.end() == 0
+
+
+def drops(folder):
+    make_ball(folder / "ball.vdb")
+    make_ball(folder / "small.vdb", "ball", 9)
+    make_ball(folder / "surface.vdb", "level_set")
+    make_ball(folder / "hollow.vdb", "empty")
+    (folder / "text.vdb").write_text("no volume")
+    (folder / "scene.yaml").write_text("lights: []\nenvironment: { constant: [0, 0, 0], show: true }\n")
+    (folder / "wrong.yaml").write_text("lihgts: []\n")
+    w = open_window(folder, "ball.vdb")
+    first = w.picture()
+    for name, sentence in (("text.vdb", "text.vdb: error"), ("surface.vdb", "no float grid that is a fog volume"),
+                           ("wrong.yaml", "unknown key 'lihgts'"), ("preview.log", "is no .vdb, no .yaml")):
+        w.drop(folder / name)
+        w.until_said(sentence)
+        assert w.picture().difference(first) < ALIKE, f"{name} changed the picture"
+    w.drop(folder / "hollow.vdb")
+    w.until_said("is empty: there is no density to show")
+    w.drop(folder / "small.vdb")
+    w.until_said("opened small.vdb")
+    w.settled()
+    w.drop(folder / "scene.yaml")
+    w.until_said("took over the scene of scene.yaml")
+    w.until(lambda: w.picture().mean() < 5.0, "a scene without light is not black")
+    w.key("ctrl+z")
+    w.until(lambda: w.picture().mean() > 20.0, "undo does not bring the scene before back")
+    assert w.end() == 0
+
+
+def reload(folder):
+    make_ball(folder / "ball.vdb")
+    w = open_window(folder, "ball.vdb")
+    first = w.picture()
+    make_ball(folder / "ball.vdb", "ball", 10)
+    w.until_said("read ball.vdb again")
+    smaller = w.settled()
+    assert smaller.difference(first) > CHANGED, "the new bake does not show"
+    (folder / "ball.vdb").write_bytes(b"cut short")
+    w.until_said("what was read before stays")
+    assert w.picture().difference(smaller) < ALIKE, "a file that does not load changed the picture"
+    make_ball(folder / "ball.vdb")
+    w.until_said("read ball.vdb again", times=2)
+    assert w.settled().difference(first) < ALIKE, "the first bake does not come back"
+    assert w.end() == 0
+
+
+def sequence(folder):
+    for number, radius in ((1, 20), (2, 16), (4, 8), (5, 12)):
+        make_ball(folder / f"s_{number:04}.vdb", "ball", radius)
+    (folder / "s_0003.vdb").write_text("bad")
+    w = open_window(folder, "s_0001.vdb")
+    first = w.picture()
+    w.key("Right")
+    second = w.settled()
+    assert second.difference(first) > CHANGED, "the next frame does not show"
+    w.key("Right")
+    w.until_said("s_0003.vdb: error")
+    assert w.picture().difference(second) < ALIKE, "the bad frame changed the picture"
+    w.key("space")
+    w.until_said("s_0003.vdb: error", times=2)  # played round, and over it again
+    w.key("space")
+    assert w.end() == 0
+
+
+def sizes_and_files(folder):
+    make_ball(folder / "ball.vdb")
+    w = open_window(folder, "ball.vdb")
+    first = w.picture()
+    w.resize(1, 1)
+    time.sleep(0.5)
+    w.resize(*w.size)
+    assert w.settled().difference(first) < ALIKE, "the picture is another after 1x1 and back"
+    w.key("F12")
+    w.until_said("wrote nephele_0001.png")
+    w.key("shift+F12")
+    w.until_said("wrote nephele_0002.exr")
+    assert (folder / "nephele_0001.png").stat().st_size > 8000, "the picture is blank"
+    w.key("ctrl+s")
+    w.until_said("wrote ball.scene.yaml")
+    w.drag((0.6, 0.5), (0.3, 0.6))
+    w.settled()
+    w.key("ctrl+o")
+    w.until_said("took over the scene of ball.scene.yaml")
+    assert w.settled().difference(first) < ALIKE, "the saved scene is another"
+    w.key("F1")
+    w.until_unlike(first)
+    w.key("Escape")  # closes the list, not the window
+    w.until_like(first)
+    w.key("Escape")
+    assert w.ended() == 0
+    assert w.stats()["gl_objects_made"] > 0
+    assert not (folder / "imgui.ini").exists(), "a file was left behind"
+
+
+CASES = [camera_moves_and_comes_back, sun_turns_and_undo_turns_it_back, views_and_split, drops, reload, sequence,
+         sizes_and_files]
+
+
+def main():
+    under_xvfb()
+    wanted = sys.argv[3:]
+    failed = 0
+    for case in CASES:
+        if wanted and case.__name__ not in wanted:
+            continue
+        start = time.monotonic()
+        with tempfile.TemporaryDirectory() as name:
+            try:
+                case(Path(name))
+                print(f"passed  {case.__name__}  {time.monotonic() - start:.1f} s")
+            except AssertionError as error:
+                failed += 1
+                print(f"FAILED  {case.__name__}: {error}")
+            finally:
+                for window in OPENED:
+                    window.kill()
+                OPENED.clear()
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
