@@ -40,6 +40,8 @@ class App {
 
   int run() {
     desk_.begin();
+    // ImGui lays windows out in their first frames and shows them after: those frames nobody should see.
+    for (int i = 0; i < kFramesAfterEvent; ++i) panel_->draw(desk_.state(), desk_.facts());
     while (!window_.closing()) turn();
     desk_.writeStats();
     return kExitDone;

@@ -47,8 +47,8 @@ std::vector<float> channelOf(const std::vector<float>& texels, size_t channel) {
 }  // namespace
 
 void Lane::restart(const LaneRequest& request) {
+  scaleKnown_ = scaleKnown_ && request.show == request_.show;
   request_ = request;
-  if (const double top = rowOf(request.show).top; top > 0.0) stats_.scale = top;
   quickNeeded_ = true;
   stats_.noise = 0.0;
   accumulator_.reset();
@@ -68,6 +68,7 @@ void Lane::drawQuick(const LaneTools& tools) {
   stats_.quickMilliseconds = seconds * 1e3;
   if (seconds > kQuickSecondsHigh) divisor_ = std::min(divisor_ + 1, kMostDivisor);
   if (seconds < kQuickSecondsLow) divisor_ = std::max(divisor_ - 1, 1);
+  if (!scaleKnown_) chooseScale(*quick_);
   quickNeeded_ = false;
 }
 
@@ -111,8 +112,14 @@ void Lane::lookAtFirstSample() {
   for (const float value : cut) stats_.raysCutShort += double{value};
   stats_.densitySamplesPerPixel = sum / drawn;
   stats_.sampleMilliseconds = fullSeconds_ * 1e3 * request_.width * request_.height / drawn;
-  if (request_.show == View::steps) stats_.scale = scaleFor(reads);
-  if (request_.show == View::slice) stats_.scale = scaleFor(channelOf(full_->radianceSums(), 0));
+  chooseScale(*full_);
+}
+
+void Lane::chooseScale(const Film& film) {
+  if (const double top = rowOf(request_.show).top; top > 0.0) stats_.scale = top;
+  if (request_.show == View::steps) stats_.scale = scaleFor(channelOf(film.depthSums(), 2));
+  if (request_.show == View::slice) stats_.scale = scaleFor(channelOf(film.radianceSums(), 0));
+  scaleKnown_ = true;
 }
 
 void Lane::measureNoise(const RestGoal& goal) {

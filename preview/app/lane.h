@@ -68,10 +68,13 @@ class Lane {
   void beginRest(const LaneTools& tools, const RestGoal& goal);
   void lookAtFirstSample();
   void measureNoise(const RestGoal& goal);
+  /// The upper end of the view's scale, for a film of one sample.
+  void chooseScale(const Film& film);
 
   LaneRequest request_;
   int divisor_ = 3;  // of the coarse picture's sides; follows from the time that it takes
   bool quickNeeded_ = false;
+  bool scaleKnown_ = false;  // for the view that is shown
   std::optional<Film> quick_;
   std::optional<Film> full_;
   std::optional<Accumulator> accumulator_;
