@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "bake/build_identity.h"
+#include "bake/pipeline_identity.h"
 #include "bake/field_specs.h"
 #include "bake/fields/motion.h"
 #include "bake/pipeline_particles.h"

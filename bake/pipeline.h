@@ -80,7 +80,7 @@ std::vector<LoopNote> loopNotesOf(const Asset& asset);
 /// 32 hex digits of everything that the asset's content depends on: its fields with all parameters, voxel
 /// size, contents of the files they name, cutoff, precision, up axis, seed, medium, time (in a loop the
 /// frame's place in it), and the program's
-/// version and sources (build_identity.h). Equal recipes written differently give equal hashes.
+/// version and sources (pipeline_identity.h). Equal recipes written differently give equal hashes.
 std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame = {});
 
 /// The same of all that the motion of an asset's particles depends on, and nothing else: its checkpoints go

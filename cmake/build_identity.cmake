@@ -9,6 +9,6 @@ foreach(source IN LISTS sources)
 endforeach()
 string(SHA256 identity "${all}")
 string(SUBSTRING ${identity} 0 32 identity)
-file(WRITE ${OUTPUT} "#include \"bake/build_identity.h\"
+file(WRITE ${OUTPUT} "#include \"bake/pipeline_identity.h\"
 std::string_view nephele::buildIdentity() { return \"${identity}\"; }
 ")

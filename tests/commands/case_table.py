@@ -87,7 +87,7 @@ BAKE = [
     wrong("    density:", "    frames: 1-4\n    loop: maybe\n    density:", "pipeline.yaml:6:11: error: 'loop'"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "perlin: { evolve: .inf }", "pipeline.yaml:6:25: error: 'evolve'"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "transform: { input: sphere, scale: [1, 0, 1] }",
-          "pipeline.yaml:6:41: error: 'scale' of 'transform'"),
+          "pipeline.yaml:6:46: error: 'scale' of 'transform'"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "warp: { input: sphere, iterations: 9 }",
           "'iterations' of 'warp' must be 1 to 8, found 9"),
     wrong("    density:", "    velocity: sphere\n    density:", "pipeline.yaml:5:15: error: 'velocity' needs three"),
