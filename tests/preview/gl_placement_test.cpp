@@ -64,7 +64,7 @@ void expectPlaced(double scale, const glm::dvec3& place, const char* name) {
   const Camera framed = frameCamera(bricks, glm::dvec3(0, 0, 1), 0.6, static_cast<double>(kWidth) / kHeight);
   int seen = 0;
   const double outside = worstError(bricks, framed, 3.0, seen);
-  EXPECT_GT(seen, 300);
+  EXPECT_GT(seen, 250);
   EXPECT_LT(outside, 1e-3) << name;
   Camera inside = framed;
   inside.position =
@@ -72,13 +72,13 @@ void expectPlaced(double scale, const glm::dvec3& place, const char* name) {
   inside.target = inside.position + (framed.target - framed.position) + glm::dvec3(0.1 * scale);
   inside.fov = 1.4;
   const double within = worstError(bricks, inside, 3.0, seen);
-  EXPECT_GT(seen, 300);
+  EXPECT_GT(seen, 250);
   EXPECT_LT(within, 1e-3) << name;
   Camera far = framed;
   far.position = framed.target + 1e4 * (framed.position - framed.target);
   far.fov = 2.0 * std::atan(1e-4 * std::tan(0.5 * framed.fov));
   const double distant = worstError(bricks, far, 3.0, seen);
-  EXPECT_GT(seen, 300);
+  EXPECT_GT(seen, 250);
   EXPECT_LT(distant, 1e-3) << name;
   std::printf("%s: largest error of transmittance outside %.3g, inside %.3g, from 10^4 away %.3g\n", name,
               outside, within, distant);
