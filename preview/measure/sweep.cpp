@@ -28,7 +28,11 @@ std::string nameOf(const Setting& setting) {
   std::ostringstream out;
   out << setting.method;
   if (setting.method != kTruth) {
-    out << " step " << setting.march.stepVoxels << ", shadow " << setting.march.shadowStepVoxels;
+    out << " step " << setting.march.stepVoxels;
+    if (setting.march.lightCache)
+      out << ", light cached";
+    else
+      out << ", shadow step " << setting.march.shadowStepVoxels;
     if (setting.octaves) out << ", octaves " << *setting.octaves;
   }
   out << ", " << setting.samples << " spp";
@@ -37,9 +41,9 @@ std::string nameOf(const Setting& setting) {
 
 /// A guess of relative cost, for order alone.
 double guessedCost(const Setting& setting) {
-  constexpr double kTruthCost = 0.1;  // of a march's at half a voxel
+  constexpr double kTruthCost = 0.1, kMarchedLight = 4.0;  // beside a march of one voxel under cached light
   if (setting.method == kTruth) return kTruthCost * setting.samples;
-  return setting.samples / setting.march.stepVoxels / std::sqrt(setting.march.shadowStepVoxels);
+  return setting.samples / setting.march.stepVoxels * (setting.march.lightCache ? 1.0 : kMarchedLight);
 }
 
 ViewedScene withSetting(const ViewedScene& view, const Setting& setting) {
@@ -130,31 +134,35 @@ std::vector<Measured> overViews(const std::vector<Measured>& single, size_t sett
 
 std::vector<Setting> settingsFor(const std::vector<std::string>& methods, const Scene& scene) {
   std::vector<Setting> settings;
-  const auto add = [&](const std::string& method, double step, double shadow, unsigned samples,
-                       std::optional<int> octaves) {
-    Setting setting;
-    setting.method = method;
+  Setting setting;
+  const auto add = [&](unsigned samples) {
     setting.samples = samples;
-    setting.march = scene.march;
-    setting.march.stepVoxels = step;
-    setting.march.shadowStepVoxels = shadow;
-    setting.octaves = octaves;
     setting.name = nameOf(setting);
     settings.push_back(setting);
   };
   for (const std::string& method : methods) {
+    setting = {};
+    setting.method = method;
+    setting.march = scene.march;
     if (method == kTruth) {
-      for (const unsigned samples : {1u, 4u, 16u, 64u, 256u})
-        add(method, scene.march.stepVoxels, scene.march.shadowStepVoxels, samples, {});
+      for (const unsigned samples : {1u, 4u, 16u, 64u, 256u}) add(samples);
       continue;
     }
     for (const double step : {8.0, 4.0, 2.0, 1.0, 0.5})
       for (const unsigned samples : {1u, 4u, 16u}) {
-        add(method, step, 2.0 * step, samples, {});
-        if (step <= 2.0) add(method, step, 8.0 * step, samples, {});
+        setting.march.stepVoxels = step;
+        setting.march.lightCache = true;
+        add(samples);
+        setting.march.lightCache = false;
+        setting.march.shadowStepVoxels = 2.0 * step;
+        add(samples);
       }
+    setting.march = scene.march;
     if (scene.octaves.count.value_or(0) > 0)
-      for (int octaves = 0; octaves <= 8; octaves += 2) add(method, 1.0, 2.0, 4, octaves);
+      for (int octaves = 0; octaves <= 8; octaves += 2) {
+        setting.octaves = octaves;
+        add(4);
+      }
   }
   std::stable_sort(settings.begin(), settings.end(),
                    [](const Setting& a, const Setting& b) { return guessedCost(a) < guessedCost(b); });

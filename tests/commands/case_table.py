@@ -185,7 +185,7 @@ PREVIEW = [
     says("preview chart good.vdb", 2, "--out is required"),
     says("preview chart good.vdb --out charts --methods mrach", 2, "did you mean 'march'?"),
     says("preview chart good.vdb --out a_file/below", 1, "a_file"),
-    prints("preview chart good.vdb --out charts --methods reference --minutes 0.02 --size 16x9", "reference, 1 spp"),
+    prints("preview chart good.vdb --out charts --methods reference --minutes 0.02 --size 16x9", "reference, 256 spp"),
     says("preview compare nowhere.exr nowhere.exr", 2, "nowhere.exr: error: no such file"),
     says("preview compare text.vdb text.vdb", 2, "text.vdb: error:"),
     says("preview good.vdb --render a_file/picture.exr --size 16x9", 1, "a_file"),
