@@ -31,7 +31,6 @@ constexpr double kMostVoxels = 1e12;
 constexpr int kRootEdge = 128;
 constexpr float kHalfLargest = 65504.0f;
 constexpr int kWordBits = 64;
-constexpr size_t kCacheLine = 64;
 
 /// A cube of 8³, 16³ … 128³ voxels that may hold something.
 struct Cube {
@@ -137,7 +136,7 @@ class Voxelizer {
 
   /// The leaf at `origin`, or null where nothing in it exceeds the cutoff.
   std::unique_ptr<Leaf> fillLeaf(const Coord& origin, LeafSums& sums) const {
-    alignas(kCacheLine) float values[kBlockPoints];
+    alignas(kBlockAlignment) float values[kBlockPoints];
     const Lattice lattice{glm::dvec3(origin.x(), origin.y(), origin.z()) * settings_.voxelSize,
                           settings_.voxelSize};
     field_.evaluate(lattice, values);

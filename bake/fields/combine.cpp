@@ -69,7 +69,8 @@ class Mix final : public Field {
  private:
   template <class Where>
   void mixAt(const Where& where, float* values) const {
-    float b[kBlockPoints], t[kBlockPoints];
+    alignas(kBlockAlignment) float b[kBlockPoints];
+    alignas(kBlockAlignment) float t[kBlockPoints];
     a_->evaluate(where, values);
     b_->evaluate(where, b);
     t_->evaluate(where, t);

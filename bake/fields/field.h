@@ -14,6 +14,9 @@ namespace nephele {
 
 inline constexpr int kBlockEdge = 8;
 inline constexpr int kBlockPoints = kBlockEdge * kBlockEdge * kBlockEdge;
+/// Bytes of the widest vector: arrays of a block's points that begin on such a border are read without a
+/// vector ever lying on two lines of the cache. Good to have, never needed.
+inline constexpr size_t kBlockAlignment = 64;
 
 /// 8³ points origin + spacing · (i, j, k), world units, ordered as an OpenVDB leaf: k (z) fastest, then j,
 /// then i.
@@ -82,7 +85,9 @@ struct LatticePoints {
   Points points() const;
 
   glm::dvec3 origin;
-  float x[kBlockPoints], y[kBlockPoints], z[kBlockPoints];
+  alignas(kBlockAlignment) float x[kBlockPoints];
+  alignas(kBlockAlignment) float y[kBlockPoints];
+  alignas(kBlockAlignment) float z[kBlockPoints];
 };
 
 }  // namespace nephele

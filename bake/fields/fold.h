@@ -49,7 +49,7 @@ class FoldField final : public Field {
     for (size_t n = 0; n < count; ++n) values[n] = rule_.start(values[n]);
     for (size_t i = 1; i < inputs_.size(); ++i) {
       if (Rule::kZeroStays && std::all_of(values, values + count, [](float v) { return v == 0.0f; })) return;
-      float next[kBlockPoints];
+      alignas(kBlockAlignment) float next[kBlockPoints];
       inputs_[i]->evaluate(where, next);
       for (size_t n = 0; n < count; ++n) values[n] = rule_.apply(values[n], next[n]);
     }

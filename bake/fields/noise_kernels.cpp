@@ -313,27 +313,30 @@ HWY_INLINE V mixCell(D d, V x0, V y0, V z0, float scale, const Dot& dot) {
   return hn::Mul(mix(low, high, sz), hn::Set(d, scale));
 }
 
-// One vector of points, given as places relative to a first cell.
-template <class D, class Gradients, class V = hn::Vec<D>>
+// One vector of points, given as places relative to a first cell. kMayShare: asks first whether all lie in
+// one cell; the answer changes no bits.
+template <bool kMayShare, class D, class Gradients, class V = hn::Vec<D>>
 HWY_INLINE V noiseAt(D d, const Gradients& table, float scale, V x, V y, V z, uint32_t cellX, uint32_t cellY,
                      uint32_t cellZ, uint32_t seed) {
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
   const V wx = hn::Floor(x), wy = hn::Floor(y), wz = hn::Floor(z);
   const V x0 = hn::Sub(x, wx), y0 = hn::Sub(y, wy), z0 = hn::Sub(z, wz);
-  const float ax = hn::GetLane(wx), ay = hn::GetLane(wy), az = hn::GetLane(wz);
-  const auto strays =
-      hn::Or(hn::Or(hn::Ne(wx, hn::Set(d, ax)), hn::Ne(wy, hn::Set(d, ay))), hn::Ne(wz, hn::Set(d, az)));
-  if (hn::AllFalse(d, strays)) {  // all in one cell, as coarse octaves mostly are: its gradients once
-    const uint32_t bx = cellX + uint32_t(int32_t(ax)), by = cellY + uint32_t(int32_t(ay)),
-                   bz = cellZ + uint32_t(int32_t(az));
-    return mixCell(
-        d, x0, y0, z0, scale, [&](uint32_t ox, uint32_t oy, uint32_t oz, V dx, V dy, V dz) HWY_ATTR {
-          const glm::vec3 g =
-              table.of(shared::hashCorner({int32_t(bx + ox), int32_t(by + oy), int32_t(bz + oz)}, seed));
-          return hn::Add(hn::Add(hn::Mul(hn::Set(d, g.x), dx), hn::Mul(hn::Set(d, g.y), dy)),
-                         hn::Mul(hn::Set(d, g.z), dz));
-        });
+  if (kMayShare) {
+    const float ax = hn::GetLane(wx), ay = hn::GetLane(wy), az = hn::GetLane(wz);
+    const auto strays =
+        hn::Or(hn::Or(hn::Ne(wx, hn::Set(d, ax)), hn::Ne(wy, hn::Set(d, ay))), hn::Ne(wz, hn::Set(d, az)));
+    if (hn::AllFalse(d, strays)) {  // all in one cell, as coarse octaves mostly are: its gradients once
+      const uint32_t bx = cellX + uint32_t(int32_t(ax)), by = cellY + uint32_t(int32_t(ay)),
+                     bz = cellZ + uint32_t(int32_t(az));
+      return mixCell(
+          d, x0, y0, z0, scale, [&](uint32_t ox, uint32_t oy, uint32_t oz, V dx, V dy, V dz) HWY_ATTR {
+            const glm::vec3 g =
+                table.of(shared::hashCorner({int32_t(bx + ox), int32_t(by + oy), int32_t(bz + oz)}, seed));
+            return hn::Add(hn::Add(hn::Mul(hn::Set(d, g.x), dx), hn::Mul(hn::Set(d, g.y), dy)),
+                           hn::Mul(hn::Set(d, g.z), dz));
+          });
+    }
   }
   const auto hashed = [&](V whole, uint32_t cell, uint32_t prime) HWY_ATTR {
     const auto at = hn::Add(hn::BitCast(du, hn::ConvertTo(di, whole)), hn::Set(du, cell));
@@ -343,20 +346,32 @@ HWY_INLINE V noiseAt(D d, const Gradients& table, float scale, V x, V y, V z, ui
   const VU plainX = hashed(wx, cellX, kHashX), plainY = hashed(wy, cellY, kHashY),
            plainZ = hashed(wz, cellZ, kHashZ);
   const VU seeds = hn::Set(du, seed);
-  const VU hx[2] = {plainX, hn::Add(plainX, hn::Set(du, kHashX))};
+  // A key's xor with its own shift is that of its parts: mixHash's first step is taken once a part.
+  const auto spread = [](VU key) HWY_ATTR { return hn::Xor(key, hn::ShiftRight<15>(key)); };
+  const VU hx[2] = {spread(plainX), spread(hn::Add(plainX, hn::Set(du, kHashX)))};
   const VU hy[2] = {plainY, hn::Add(plainY, hn::Set(du, kHashY))};
   const VU hz[2] = {hn::Xor(plainZ, seeds), hn::Xor(hn::Add(plainZ, hn::Set(du, kHashZ)), seeds)};
-  const VU hyz[4] = {hn::Xor(hy[0], hz[0]), hn::Xor(hy[1], hz[0]), hn::Xor(hy[0], hz[1]),
-                     hn::Xor(hy[1], hz[1])};
+  const VU hyz[4] = {spread(hn::Xor(hy[0], hz[0])), spread(hn::Xor(hy[1], hz[0])),
+                     spread(hn::Xor(hy[0], hz[1])), spread(hn::Xor(hy[1], hz[1]))};
   return mixCell(d, x0, y0, z0, scale, [&](uint32_t ox, uint32_t oy, uint32_t oz, V dx, V dy, V dz) HWY_ATTR {
-    return table.dot(mixHash(du, hn::Xor(hx[ox], hyz[oy + 2 * oz])), dx, dy, dz);
+    const VU hash = hn::Mul(hn::Xor(hx[ox], hyz[oy + 2 * oz]), hn::Set(du, kMix));
+    return table.dot(hash, dx, dy, dz);
   });
 }
 
-// Points from `first` on whose number is a multiple of the vector's lanes; returns how many were done.
-template <class Gradients>
-HWY_INLINE size_t addWith(const Gradients& table, const NoiseOctave& octave, const Points& points,
-                          float* sums) {
+// Whether a vector of neighbouring points mostly lies in one cell, judged by one in the middle: the chance is
+// one less the way from its first point to its last, in cells.
+HWY_INLINE bool oftenShared(const Points& points, float frequency, size_t lanes) {
+  if (points.count < lanes) return false;
+  const size_t first = (points.count - lanes) / 2, last = first + lanes - 1;
+  const auto way = [&](const float* at) { return std::abs(at[last] - at[first]) * frequency; };
+  return way(points.x) + way(points.y) + way(points.z) < 0.5f;
+}
+
+// Whole vectors of points from the first on; returns how many points those are.
+template <bool kMayShare, class Gradients>
+HWY_INLINE size_t addVectors(const Gradients& table, const NoiseOctave& octave, const Points& points,
+                             float* sums) {
   const Tag d;
   const size_t lanes = hn::Lanes(d);
   const float scale = noiseScale(octave);
@@ -369,11 +384,19 @@ HWY_INLINE size_t addWith(const Gradients& table, const NoiseOctave& octave, con
     const auto x = hn::Add(hn::Set(d, px.fraction), hn::Mul(hn::LoadU(d, points.x + n), frequency));
     const auto y = hn::Add(hn::Set(d, py.fraction), hn::Mul(hn::LoadU(d, points.y + n), frequency));
     const auto z = hn::Add(hn::Set(d, pz.fraction), hn::Mul(hn::LoadU(d, points.z + n), frequency));
-    const auto noise = noiseAt(d, table, scale, x, y, z, uint32_t(px.cell), uint32_t(py.cell),
-                               uint32_t(pz.cell), octave.seed);
+    const auto noise = noiseAt<kMayShare>(d, table, scale, x, y, z, uint32_t(px.cell), uint32_t(py.cell),
+                                          uint32_t(pz.cell), octave.seed);
     hn::StoreU(hn::Add(hn::LoadU(d, sums + n), hn::Mul(weight, noise)), d, sums + n);
   }
   return n;
+}
+
+template <class Gradients>
+HWY_INLINE size_t addWith(const Gradients& table, const NoiseOctave& octave, const Points& points,
+                          float* sums) {
+  return oftenShared(points, float(1.0 / octave.cellSize), hn::Lanes(Tag()))
+             ? addVectors<true>(table, octave, points, sums)
+             : addVectors<false>(table, octave, points, sums);
 }
 
 size_t addAtPoints(const NoiseOctave& octave, const Points& points, float* sums) {

@@ -47,7 +47,7 @@ class FractalField final : public Field {
   template <class Where>
   void sum(const Where& where, size_t count, float* values) const {
     std::fill_n(values, count, level_);
-    float octaveValues[kBlockPoints];
+    alignas(kBlockAlignment) float octaveValues[kBlockPoints];
     for (const NoiseOctave& octave : octaves_) {
       evaluateBasis(basis_, octave, where, octaveValues);
       if (fold_ == Fold::plain)
@@ -230,7 +230,7 @@ class PerlinWorley final : public Field {
  private:
   template <class Where>
   void join(const Where& where, size_t count, float* values) const {
-    float distance[kBlockPoints];
+    alignas(kBlockAlignment) float distance[kBlockPoints];
     perlin_->evaluate(where, values);
     worley_->evaluate(where, distance);
     for (size_t n = 0; n < count; ++n) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "bake/fields/displace.h"
 #include "bake/fields/noise_kernels.h"
 #include "bake/fields/perlin.h"
 #include "bake/fields/rows.h"
@@ -28,14 +29,16 @@ class Warp final : public Field {
   }
 
   void evaluate(const Lattice& lattice, float* values) const override {
-    const LatticePoints block(lattice);
     Moved moved;
     for (size_t axis = 0; axis < 3; ++axis) {
       std::fill_n(moved.at[axis], kBlockPoints, 0.0f);
       addNoiseOnLattice(noise_.front()[axis].data(), noise_.front()[axis].size(), lattice, moved.at[axis]);
     }
-    move(block.points(), moved);
-    evaluateMoved(block.points(), moved, values);
+    displaceOnLattice(lattice, float(scale_), moved.at);
+    if (noise_.size() == 1)
+      input_->evaluate(moved.points({lattice.origin, kBlockPoints}), values);
+    else
+      evaluateMoved(LatticePoints(lattice).points(), moved, values);
   }
 
   Interval bounds(const Box& box) const override {
@@ -72,25 +75,19 @@ class Warp final : public Field {
 
  private:
   struct Moved {
-    float at[3][kBlockPoints];
+    alignas(kBlockAlignment) float at[3][kBlockPoints];
     Points points(const Points& like) const { return {like.origin, like.count, at[0], at[1], at[2]}; }
   };
 
-  /// Turns noise sums into displaced coordinates.
-  void move(const Points& points, Moved& moved) const {
-    const float* const from[3] = {points.x, points.y, points.z};
-    for (int axis = 0; axis < 3; ++axis)
-      for (size_t n = 0; n < points.count; ++n)
-        moved.at[axis][n] = from[axis][n] + float(scale_) * moved.at[axis][n];
-  }
-
   /// moved = points + scale · W(where).
   void displace(const Points& points, const Points& where, const Displacement& noise, Moved& moved) const {
+    const float* const from[3] = {points.x, points.y, points.z};
     for (size_t axis = 0; axis < 3; ++axis) {
-      std::fill_n(moved.at[axis], points.count, 0.0f);
-      for (const NoiseOctave& octave : noise[axis]) addNoiseAtPoints(octave, where, moved.at[axis]);
+      float* const to = moved.at[axis];
+      std::fill_n(to, points.count, 0.0f);
+      for (const NoiseOctave& octave : noise[axis]) addNoiseAtPoints(octave, where, to);
+      for (size_t n = 0; n < points.count; ++n) to[n] = from[axis][n] + float(scale_) * to[n];
     }
-    move(points, moved);
   }
 
   void evaluateMoved(const Points& points, const Moved& first, float* values) const {
