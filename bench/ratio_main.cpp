@@ -17,6 +17,8 @@ int main(int argc, char** argv) {
   try {
     using namespace nephele::bench;
     Table table(filter);
+    // First: Linux counts the memory of the program that starts another to that one's peak.
+    measurePeakMemory(table, NEPHELE_BAKE_PROGRAM);
 #ifdef NEPHELE_WITH_FASTNOISE2
     compareNoise(table);
 #else
@@ -25,7 +27,6 @@ int main(int argc, char** argv) {
     compareFogBall(table);
     compareSparseness(table);
     compareSplat(table);
-    measurePeakMemory(table, NEPHELE_BAKE_PROGRAM);
     if (!json.empty()) table.writeJson(json);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "nephele_ratios: error: %s\n", error.what());

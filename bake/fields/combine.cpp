@@ -24,7 +24,7 @@ class Constant final : public Field {
 };
 
 struct Add : Fold {
-  static constexpr bool kZeroStays = false;
+  static constexpr bool kZeroStays = false, kZeroAddsNothing = true;
   static float apply(float a, float b) { return a + b; }
   static Interval join(const Interval& a, const Interval& b) { return a + b; }
   static Box hold(const Box& a, const Box& b) { return hull(a, b); }

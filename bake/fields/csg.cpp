@@ -16,7 +16,7 @@ struct SetFold : Fold {
 };
 
 struct Union : SetFold {
-  static constexpr bool kZeroStays = false;
+  static constexpr bool kZeroStays = false, kZeroAddsNothing = true;
   static float apply(float a, float b) { return shared::uniteDensities(a, b); }
   static Interval join(const Interval& a, const Interval& b) { return maximum(a, b); }
   static Box hold(const Box& a, const Box& b) { return hull(a, b); }

@@ -14,14 +14,18 @@ inline size_t countOf(const Lattice&) { return size_t(kBlockPoints); }
 struct Fold {
   static float start(float a) { return a; }
   static Interval startOver(const Interval& a) { return a; }
+  static constexpr bool kZeroAddsNothing = false;
 };
 
 /// A fold over a list. Rule gives, beside what Fold does: apply(sum, value), join(Interval, Interval) over
-/// the same, hold(Box, Box) of supports, and kZeroStays: whether what is 0 stays so whatever follows.
+/// the same, hold(Box, Box) of supports, and kZeroStays: whether what is 0 stays so whatever follows. Where
+/// kZeroAddsNothing, an input that is 0 throughout changes nothing and is not evaluated.
 template <class Rule>
 class FoldField final : public Field {
  public:
-  FoldField(std::vector<FieldPtr> inputs, Rule rule) : inputs_(std::move(inputs)), rule_(rule) {}
+  FoldField(std::vector<FieldPtr> inputs, Rule rule) : inputs_(std::move(inputs)), rule_(rule) {
+    for (const FieldPtr& input : inputs_) supports_.push_back(input->support());
+  }
 
   void evaluate(const Points& points, float* values) const override { fold(points, values); }
   void evaluate(const Lattice& lattice, float* values) const override { fold(lattice, values); }
@@ -42,6 +46,13 @@ class FoldField final : public Field {
   }
 
  private:
+  /// Whether all of a block lies where a field with this support is 0. Points are not asked.
+  static bool misses(const Lattice& block, const Box& support) {
+    constexpr double kReach = kBlockEdge - 1;
+    return intersection(support, {block.origin, block.origin + kReach * block.spacing}).empty();
+  }
+  static bool misses(const Points&, const Box&) { return false; }
+
   template <class Where>
   void fold(const Where& where, float* values) const {
     const size_t count = countOf(where);
@@ -49,6 +60,7 @@ class FoldField final : public Field {
     for (size_t n = 0; n < count; ++n) values[n] = rule_.start(values[n]);
     for (size_t i = 1; i < inputs_.size(); ++i) {
       if (Rule::kZeroStays && std::all_of(values, values + count, [](float v) { return v == 0.0f; })) return;
+      if (Rule::kZeroAddsNothing && misses(where, supports_[i])) continue;
       alignas(kBlockAlignment) float next[kBlockPoints];
       inputs_[i]->evaluate(where, next);
       for (size_t n = 0; n < count; ++n) values[n] = rule_.apply(values[n], next[n]);
@@ -56,6 +68,7 @@ class FoldField final : public Field {
   }
 
   std::vector<FieldPtr> inputs_;
+  std::vector<Box> supports_;
   Rule rule_;
 };
 
