@@ -51,7 +51,8 @@ struct Max : Fold {
 /// a + (b − a) · t.
 class Mix final : public Field {
  public:
-  Mix(FieldPtr a, FieldPtr b, FieldPtr t) : a_(std::move(a)), b_(std::move(b)), t_(std::move(t)) {}
+  Mix(FieldPtr a, FieldPtr b, FieldPtr t)
+      : a_(std::move(a)), b_(std::move(b)), t_(std::move(t)), support_(hull(a_->support(), b_->support())) {}
   void evaluate(const Points& points, float* values) const override { mixAt(points, values); }
   void evaluate(const Lattice& lattice, float* values) const override { mixAt(lattice, values); }
   Interval bounds(const Box& box) const override {
@@ -64,7 +65,7 @@ class Mix final : public Field {
     const Interval between = hullOf(a, b);
     return both(plain, {between.low - room, between.high + room});
   }
-  Box support() const override { return hull(a_->support(), b_->support()); }
+  Box support() const override { return support_; }
 
  private:
   template <class Where>
@@ -77,6 +78,7 @@ class Mix final : public Field {
     for (size_t n = 0; n < countOf(where); ++n) values[n] += (b[n] - values[n]) * t[n];
   }
   FieldPtr a_, b_, t_;
+  Box support_;  // kept, as folds keep theirs
 };
 
 class Remap final : public Field {

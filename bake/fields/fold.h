@@ -25,6 +25,8 @@ class FoldField final : public Field {
  public:
   FoldField(std::vector<FieldPtr> inputs, Rule rule) : inputs_(std::move(inputs)), rule_(rule) {
     for (const FieldPtr& input : inputs_) supports_.push_back(input->support());
+    support_ = supports_.front();
+    for (size_t i = 1; i < supports_.size(); ++i) support_ = rule_.hold(support_, supports_[i]);
   }
 
   void evaluate(const Points& points, float* values) const override { fold(points, values); }
@@ -39,11 +41,7 @@ class FoldField final : public Field {
     return sum;
   }
 
-  Box support() const override {
-    Box box = inputs_.front()->support();
-    for (size_t i = 1; i < inputs_.size(); ++i) box = rule_.hold(box, inputs_[i]->support());
-    return box;
-  }
+  Box support() const override { return support_; }
 
  private:
   /// Whether all of a block lies where a field with this support is 0. Points are not asked.
@@ -68,7 +66,9 @@ class FoldField final : public Field {
   }
 
   std::vector<FieldPtr> inputs_;
+  // Kept, since aliases may make the same input a part of a field in very many ways.
   std::vector<Box> supports_;
+  Box support_;
   Rule rule_;
 };
 

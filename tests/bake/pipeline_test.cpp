@@ -164,14 +164,21 @@ TEST(Pipeline, ACycleIsAnErrorWithItsPath) {
 }
 
 TEST(Pipeline, AliasesOfAliasesStayCheap) {
-  // 2^40 leaves if every path were walked.
+  // 2^40 leaves if every path were walked, in sums and in mixes.
   std::string text = "fields:\n  f00: &f00 { add: [1, 1] }\n";
   for (int n = 1; n <= 40; ++n) {
     char line[96];
     std::snprintf(line, sizeof line, "  f%02d: &f%02d { add: [*f%02d, *f%02d] }\n", n, n, n - 1, n - 1);
     text += line;
   }
-  const Pipeline pipeline = load(text + withDensity("{ multiply: [sphere, *f40] }"));
+  text += "  m00: &m00 { mix: { a: 1, b: 1, t: 1 } }\n";
+  for (int n = 1; n <= 40; ++n) {
+    char line[96];
+    std::snprintf(line, sizeof line, "  m%02d: &m%02d { mix: { a: *m%02d, b: *m%02d, t: 1 } }\n", n, n, n - 1,
+                  n - 1);
+    text += line;
+  }
+  const Pipeline pipeline = load(text + withDensity("{ multiply: [sphere, *f40, *m40] }"));
   const FieldPtr field = buildField(*pipeline.assets.front().density, {0.1, 2, 0, nullptr});
   EXPECT_NE(field, nullptr);
   EXPECT_EQ(recipeHash(pipeline, pipeline.assets.front()).size(), 32u);
