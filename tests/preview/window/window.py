@@ -133,11 +133,22 @@ class Window:
         self.seen = begun()
         return self.picture()
 
-    def until_like(self, picture, **region):
-        self.until(lambda: self.picture().difference(picture, **region) < ALIKE, "the pictures do not become alike")
+    def until_like(self, picture, complaint, **region):
+        """Until the window shows that picture, or a part of it. What is shown then is what settled() waits to change."""
+        self.until(lambda: self.shows(picture) and self.picture().difference(picture, **region) < ALIKE, complaint)
+        self.see()
 
-    def until_unlike(self, picture, **region):
-        self.until(lambda: self.picture().difference(picture, **region) > CHANGED, "the picture does not change")
+    def until_unlike(self, picture, complaint, **region):
+        self.until(lambda: self.shows(picture) and self.picture().difference(picture, **region) > CHANGED, complaint)
+        self.see()
+
+    def shows(self, picture):
+        now = self.picture()
+        return now is not None and (now.width, now.height) == (picture.width, picture.height)
+
+    def see(self):
+        stats = self.stats()
+        self.seen = max(self.seen, stats["pictures_begun"] if stats else 0)
 
     def end(self):
         """Closes the window as its frame would; returns the exit code."""

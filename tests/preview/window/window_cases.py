@@ -13,6 +13,7 @@ from pathlib import Path
 from window import ALIKE, CHANGED, Window, under_xvfb
 
 PREVIEW, MAKE_BALL = sys.argv[1:3]
+TRIES = 10
 OPENED = []  # windows of the case that runs, to be ended with it
 
 
@@ -26,9 +27,9 @@ def make_ball(path, *words):
 def open_window(folder, file, *options, **more):
     window = Window(PREVIEW, folder, file, *options, **more)
     OPENED.append(window)
+    with_panel = window.picture()
     window.key("h")  # pictures without the panel
-    window.until(lambda: window.picture() is not None, "the window cannot be read")
-    time.sleep(0.5)
+    window.until_unlike(with_panel, "H does not hide the panel", bottom=0.12)
     return window
 
 
@@ -45,16 +46,19 @@ def camera_moves_and_comes_back(folder):
     panned = w.settled()
     assert panned.difference(orbited) > CHANGED, "the middle drag did not pan"
     w.drag((0.6, 0.5), (0.55, 0.5), button=3)
-    assert w.settled().difference(panned) > CHANGED, "the right drag did not look around"
+    w.until_unlike(panned, "the right drag did not look around")
     w.key("2")
     w.until_said("bookmark 2 is not set")
     w.key("1")
-    assert w.settled().difference(first) < ALIKE, "the bookmark does not come back"
-    w.double_click((0.5, 0.62))
-    focused = w.settled()
-    assert focused.difference(first) > CHANGED, "the double click focused on nothing"
+    w.until_like(first, "the bookmark does not come back")
+    for _ in range(TRIES):  # on a busy machine two clicks may be seen too far apart to be one double click
+        w.double_click((0.5, 0.62))
+        time.sleep(1.0)
+        if w.picture().difference(first) > CHANGED:
+            break
+    w.until_unlike(first, "the double click focused on nothing")
     w.key("Home")
-    assert w.settled().difference(first) < ALIKE, "Home does not frame the cloud"
+    w.until_like(first, "Home does not frame the cloud")
     assert w.end() == 0
 
 
@@ -66,14 +70,14 @@ def sun_turns_and_undo_turns_it_back(folder):
     turned = w.settled()
     assert turned.difference(first) > CHANGED, "the sun did not turn"
     w.key("ctrl+z")  # the whole drag is one step
-    assert w.settled().difference(first) < ALIKE, "undo does not bring the sun back"
+    w.until_like(first, "undo does not bring the sun back")
     w.key("ctrl+shift+z")
-    assert w.settled().difference(turned) < ALIKE, "redo does not turn it again"
+    w.until_like(turned, "redo does not turn it again")
     w.key("ctrl+z", "ctrl+z")
     w.until_said("nothing to undo")
     w.key("l")
     w.until_said("look: report")
-    assert w.settled().difference(first) > CHANGED, "the looks do not differ"
+    w.until_unlike(first, "the looks do not differ")
     assert w.end() == 0
 
 
@@ -91,16 +95,14 @@ def views_and_split(folder):
     first = w.settled()
     w.key("c")
     w.drag((0.75, 0.3), (0.95, 0.45), modifier="ctrl")  # a sun of its own for the right side
-    split = w.settled()
-    assert split.difference(first, right=0.45) < ALIKE, "the left side is not kept"
-    assert split.difference(first, left=0.55) > CHANGED, "the right side does not follow"
+    w.until_unlike(first, "the right side does not follow", left=0.55)
+    w.until_like(first, "the left side is not kept", right=0.45)
     w.drag((0.5, 0.9), (0.9, 0.9))  # the divider
-    w.until_like(first, right=0.85)
+    w.until_like(first, "the divider did not move", right=0.85)
     w.drag((0.9, 0.9), (0.5, 0.9))
     w.key("x")
-    w.settled()
-    w.until_like(first, left=0.55)
-    w.until_unlike(first, right=0.45)
+    w.until_like(first, "the sides did not swap", left=0.55)
+    w.until_unlike(first, "both sides are the same", right=0.45)
     assert w.end() == 0
 
 
@@ -145,7 +147,7 @@ def reload(folder):
     assert w.picture().difference(smaller) < ALIKE, "a file that does not load changed the picture"
     make_ball(folder / "ball.vdb")
     w.until_said("read ball.vdb again", times=2)
-    assert w.settled().difference(first) < ALIKE, "the first bake does not come back"
+    w.until_like(first, "the first bake does not come back")
     assert w.end() == 0
 
 
@@ -174,7 +176,7 @@ def sizes_and_files(folder):
     w.resize(1, 1)
     time.sleep(0.5)
     w.resize(*w.size)
-    assert w.settled().difference(first) < ALIKE, "the picture is another after 1x1 and back"
+    w.until_like(first, "the picture is another after 1x1 and back")
     w.key("F12")
     w.until_said("wrote nephele_0001.png")
     w.key("shift+F12")
@@ -186,11 +188,11 @@ def sizes_and_files(folder):
     w.settled()
     w.key("ctrl+o")
     w.until_said("took over the scene of ball.scene.yaml")
-    assert w.settled().difference(first) < ALIKE, "the saved scene is another"
+    w.until_like(first, "the saved scene is another")
     w.key("F1")
-    w.until_unlike(first)
+    w.until_unlike(first, "F1 lists nothing")
     w.key("Escape")  # closes the list, not the window
-    w.until_like(first)
+    w.until_like(first, "Escape does not close the list")
     w.key("Escape")
     assert w.ended() == 0
     assert w.stats()["gl_objects_made"] > 0
