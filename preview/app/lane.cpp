@@ -8,6 +8,7 @@
 
 #include "preview/app/noise_estimate.h"
 #include "preview/gpu/camera_rays.h"
+#include "preview/gpu/moving.h"
 
 namespace nephele {
 namespace {
@@ -18,8 +19,7 @@ using Clock = std::chrono::steady_clock;
 // flutter.
 constexpr double kQuickSecondsLow = 0.012, kQuickSecondsHigh = 0.035;
 constexpr int kMostDivisor = 8;
-constexpr double kQuickStepFactor = 3.0;
-constexpr unsigned kFirstCheck = 4;  // samples before noise is measured: two halves of fewer tell too little
+constexpr unsigned kFirstCheck = 8;  // samples before noise is measured: two halves of fewer tell too little
 constexpr unsigned kSamplesWithoutNoise = 16;  // a view without random numbers needs smooth edges alone
 
 double secondsSince(Clock::time_point start) {
@@ -58,10 +58,10 @@ void Lane::drawQuick(const LaneTools& tools) {
   const int width = std::max(1, request_.width / divisor_), height = std::max(1, request_.height / divisor_);
   fitFilm(quick_, width, height);
   ViewedScene coarse = request_.view;
-  coarse.scene.march.stepVoxels *= kQuickStepFactor;
-  coarse.scene.march.shadowStepVoxels *= kQuickStepFactor;
+  coarse.scene.march = movingMarch(coarse.scene.march);
   const auto start = Clock::now();
   tools.pass.setParameters(marchParameters(coarse, tools.bricks, width, height, tools.seed, true));
+  tools.pass.prepare(tools.atlas, kMovingCacheSeconds);
   Accumulator once(width, height, 1, tools.seed);
   once.advance(tools.pass, tools.atlas, *quick_, std::numeric_limits<double>::infinity());
   const double seconds = secondsSince(start);
@@ -90,6 +90,7 @@ bool Lane::work(const LaneTools& tools, double seconds, const RestGoal& goal) {
   if (!unfinished()) return false;
   tools.pass.setParameters(
       marchParameters(request_.view, tools.bricks, request_.width, request_.height, tools.seed, true));
+  if (!tools.pass.prepare(tools.atlas, seconds)) return true;
   const auto start = Clock::now();
   const unsigned before = accumulator_->wholeSamples();
   // The two halves are read where exactly so many samples are whole.

@@ -72,7 +72,7 @@ class Lane {
   void chooseScale(const Film& film);
 
   LaneRequest request_;
-  int divisor_ = 3;  // of the coarse picture's sides; follows from the time that it takes
+  int divisor_ = 2;  // of the coarse picture's sides; follows from the time that it takes
   bool quickNeeded_ = false;
   bool scaleKnown_ = false;  // for the view that is shown
   std::optional<Film> quick_;

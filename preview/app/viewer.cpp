@@ -64,6 +64,7 @@ LaneTools Viewer::toolsFor(const Lane& lane) {
   if (lane.request().show == View::slice)
     pass.setSlice(lane.request().slice.axis, slicePlace(lane.request().slice, *bricks_));
   pass.setEnvironment(lane.request().view.environmentMap);
+  pass.useCache(lanes_[1] && &lane == &*lanes_[1] ? 1 : 0);
   return {*bricks_, *atlas_, pass, seed_};
 }
 
@@ -104,6 +105,7 @@ void Viewer::showSide(size_t side, const Shown& shown, const Screen& screen) {
   if (film == nullptr) return;
   MarchPass& pass = passFor(View::radiance);  // it holds the sky
   pass.setEnvironment(lane.request().view.environmentMap);
+  pass.useCache(lanes_[1] && &lane == &*lanes_[1] ? 1 : 0);
   pass.bindEnvironment();
   glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, displayParameters_[side].name());
   film->bindForDisplay();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <limits>
 
 namespace nephele {
 namespace {
@@ -139,6 +140,7 @@ bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& paramete
     known_.reset();
     shape(atlas, parameters);
     atlasSerial_ = atlas.serial();
+    seconds = std::numeric_limits<double>::infinity();  // it holds nothing that could be shown meanwhile
   }
   findTasks(parameters);
   if (blockTotal_ == 0) tasks_.clear();

@@ -76,9 +76,21 @@ bool MarchPass::prepare(const BrickAtlas& atlas, double seconds) {
   glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, buffer_.name());
   preparedFor_ = atlas.serial();
   if (writes_ != MarchWrites::radiance || !wantsCache(parameters_)) return true;
-  if (!cache_) cache_.emplace(filter_, changes_);
+  std::optional<LightCache>& cache = caches_[which_];
+  if (!cache) cache.emplace(filter_, changes_);
   sky_.bind();
-  return cache_->update(atlas, parameters_, seconds);
+  return cache->update(atlas, parameters_, seconds);
+}
+
+void MarchPass::useCache(size_t which) {
+  NEPHELE_CHECK_LT(which, kCaches);
+  if (which != which_) preparedFor_ = 0;
+  which_ = which;
+}
+
+double MarchPass::takeCacheDensities() {
+  std::optional<LightCache>& cache = caches_[which_];
+  return cache ? cache->takeDensitiesRead() : 0.0;
 }
 
 void MarchPass::setSlice(int axis, float place) { slice_ = glm::vec2(static_cast<float>(axis), place); }
@@ -89,7 +101,7 @@ void MarchPass::draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPix
   film.bindAsTarget();
   atlas.bind();
   sky_.bind();
-  if (cache_) cache_->bind();
+  if (caches_[which_]) caches_[which_]->bind();
   glBindTextureUnit(kJitterUnit, jitter_.name());
   glUseProgram(program().name());
   glBindVertexArray(noVertices_.name());
@@ -106,7 +118,9 @@ void MarchPass::draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPix
 
 uint64_t MarchPass::gpuBytes() const {
   constexpr uint64_t kTileBytes = uint64_t{shared::kJitterTile} * shared::kJitterTile * sizeof(float);
-  return sizeof(shared::MarchParameters) + kTileBytes + sky_.gpuBytes() + (cache_ ? cache_->gpuBytes() : 0);
+  uint64_t bytes = sizeof(shared::MarchParameters) + kTileBytes + sky_.gpuBytes();
+  for (const std::optional<LightCache>& cache : caches_) bytes += cache ? cache->gpuBytes() : 0;
+  return bytes;
 }
 
 }  // namespace nephele

@@ -44,6 +44,9 @@ class MarchPass {
   /// Fills what the light cache lacks for these parameters and this volume, for about `seconds`; returns
   /// whether it lacks nothing more. Until then draws take what the cache held before.
   bool prepare(const BrickAtlas& atlas, double seconds);
+  /// Which of the light caches is meant from now on: pictures under two settings, drawn by turns, need one
+  /// each.
+  void useCache(size_t which);
   /// Adds one sample of each pixel in `where` to the film, seen through picture position (x, y) + subPixel;
   /// `number` is the sample's number. Prepares wholly where prepare was not called for this volume. Does not
   /// wait for the GPU.
@@ -53,7 +56,7 @@ class MarchPass {
   Filter filter() const { return filter_; }
   uint64_t gpuBytes() const;
   /// Densities read to fill the light cache since the last call.
-  double takeCacheDensities() { return cache_ ? cache_->takeDensitiesRead() : 0.0; }
+  double takeCacheDensities();
 
  private:
   const GlProgram& program();
@@ -69,7 +72,9 @@ class MarchPass {
   SkyTextures sky_;
   GlVertexArray noVertices_;
   shared::MarchParameters parameters_{};
-  std::optional<LightCache> cache_;
+  static constexpr size_t kCaches = 2;
+  std::optional<LightCache> caches_[kCaches];
+  size_t which_ = 0;          // of them
   uint64_t preparedFor_ = 0;  // the atlas's serial
 };
 

@@ -20,12 +20,12 @@ NPH_FN vec3 scatteredByOrders(vec3 toLight, vec3 ray, float column) {
   return sum;
 }
 
-// The column beyond which no order lets through more than the smallest transmittance worth following.
-NPH_FN float columnThatHides() {
+// The column beyond which no order lets through more than `smallest` of the light.
+NPH_FN float columnThatHides(float smallest) {
   float extinction = min(params.sigmaT.x, min(params.sigmaT.y, params.sigmaT.z));
   for (int m = 0; m < params.counts.y; ++m) extinction *= params.octaves.x;
   // 1e30: with no extinction nothing hides.
-  return extinction > 0.0f ? min(-log(params.environment.w) / extinction, 1e30f) : 1e30f;
+  return extinction > 0.0f ? min(-log(smallest) / extinction, 1e30f) : 1e30f;
 }
 
 // A light or, beyond the last one, the sky, as seen from a point.

@@ -24,7 +24,7 @@ NPH_FN vec3 skyDirection(int i) {
 // What the sky scatters at a position towards a ray, per unit density and before σ_s, to first order in the ray's direction
 // (the phase function's and the sky's first two bands of spherical harmonics): sky0.rgb + dot(sky1.xyz, ray) · sky0.rgb.
 NPH_FN void skyToCache(vec3 position, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NPH_INOUT(vec2) cost) {
-  float enough = columnThatHides();
+  float enough = columnThatHides(1e-3f);  // of a sky that comes from all sides, less is not seen
   vec3 even = vec3(0.0f);
   vec3 slope = vec3(0.0f);
   for (int i = 0; i < kSkyDirections; ++i) {

@@ -53,7 +53,7 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
   if (!intersectBox(origin, direction, vec3(params.boxMin), vec3(params.boxMax), tNear, tFar)) return result;
   float voxel = 1.0f / length(direction);  // world units
   float margin = params.walk.x * voxel;
-  float enough = columnThatHides();
+  float enough = columnThatHides(params.environment.w);
   uint lit = 0u;
   uint word = 0u;  // of the brick that the ray is in
   vec3 corner = vec3(0.0f);

@@ -1,0 +1,159 @@
+// nephele_moving FILE.vdb SCENE.yaml [--rest N]: the viewer as the window has it, without a window, in 640 ×
+// 360: frames of an orbit, each with its time and its error against its own picture at rest, and how near a
+// picture is 3 s after the last input to that of N samples (1024). Times are the machine's at that moment;
+// compare them within one run.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <glm/gtc/constants.hpp>
+#include <iostream>
+#include <limits>
+
+#include "base/error.h"
+#include "preview/app/orbit_camera.h"
+#include "preview/app/viewer.h"
+#include "preview/gpu/egl_context.h"
+#include "preview/measure/compare.h"
+#include "preview/resolve.h"
+
+namespace nephele {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kWidth = 640, kHeight = 360, kFrames = 60;
+constexpr double kRestSeconds = 3.0;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// As the window shows a smaller picture: linear between its pixels.
+Picture enlarged(const Picture& small, int width, int height) {
+  Picture big;
+  big.width = width;
+  big.height = height;
+  for (const std::string& name : small.names) big.add(name);
+  const auto place = [](int x, int from, int to) {
+    return std::clamp((x + 0.5) * from / to - 0.5, 0.0, static_cast<double>(from - 1));
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double px = place(x, small.width, width), py = place(y, small.height, height);
+      const int x0 = static_cast<int>(px), y0 = static_cast<int>(py);
+      const int x1 = std::min(x0 + 1, small.width - 1), y1 = std::min(y0 + 1, small.height - 1);
+      for (size_t plane = 0; plane < small.planes.size(); ++plane) {
+        const auto at = [&](int i, int j) {
+          return double{small.planes[plane][static_cast<size_t>(j) * static_cast<size_t>(small.width) +
+                                            static_cast<size_t>(i)]};
+        };
+        const double upper = std::lerp(at(x0, y0), at(x1, y0), px - x0),
+                     lower = std::lerp(at(x0, y1), at(x1, y1), px - x0);
+        big.planes[plane][static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)] =
+            static_cast<float>(std::lerp(upper, lower, py - y0));
+      }
+    }
+  return big;
+}
+
+class Bench {
+ public:
+  Bench(const std::string& file, const std::string& sceneFile)
+      : bricks_(std::make_shared<BrickVolume>(loadBricks(file))) {
+    std::string sentence;
+    constexpr double kAspect = static_cast<double>(kWidth) / kHeight;
+    view_ = resolveScene(loadScene(sceneFile), *bricks_, kAspect, sentence);
+    viewer_.emplace(Filter::hardware, 0u);
+    viewer_->setVolume(bricks_);
+    screen_ = makeTexture(GL_TEXTURE_2D);
+    glTextureStorage2D(screen_.name(), 1, GL_RGBA8, kWidth, kHeight);
+    framebuffer_ = makeFramebuffer();
+    glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, screen_.name(), 0);
+  }
+
+  void orbit() {
+    OrbitCamera camera(view_.camera);
+    std::vector<double> milliseconds;
+    double worst = 0.0;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      constexpr double kTurn = 0.02;
+      camera.orbit(kTurn, 0.0);
+      view_.camera = camera.camera();
+      const auto start = Clock::now();
+      restart();
+      viewer_->work(0.0);
+      viewer_->show({framebuffer_.name(), kWidth, kHeight, 0.0}, {Shown{view_.scene, 0.0}, Shown{}});
+      finishGl("showing");
+      milliseconds.push_back(1e3 * secondsSince(start));
+      constexpr int kEvery = 30;
+      if (frame % kEvery != kEvery - 1) continue;
+      const Picture quick = viewer_->read();
+      rest(kCompareSamples, std::numeric_limits<double>::infinity());
+      const double error =
+          comparePictures(enlarged(quick, kWidth, kHeight), "moving", viewer_->read(), "rest").relativeRmse;
+      std::printf("frame %d: %dx%d, %.1f ms, relative RMSE %.4f to its picture at rest\n", frame, quick.width,
+                  quick.height, milliseconds.back(), error);
+      worst = std::max(worst, error);
+    }
+    std::sort(milliseconds.begin(), milliseconds.end());
+    std::printf("moving: median %.1f ms, least %.1f, 95th of 100 %.1f; worst relative RMSE %.4f\n",
+                milliseconds[kFrames / 2], milliseconds.front(), milliseconds[kFrames * 95 / 100], worst);
+  }
+
+  void settle(unsigned samples) {
+    view_.camera.position += glm::dvec3(1e-4);
+    restart();
+    const auto start = Clock::now();
+    rest(std::numeric_limits<unsigned>::max(), kRestSeconds);
+    const double seconds = secondsSince(start);
+    const Picture soon = viewer_->read();
+    const LaneStats stats = viewer_->stats(Side::edited);
+    rest(samples, std::numeric_limits<double>::infinity());
+    const double error = comparePictures(soon, "soon", viewer_->read(), "rest").relativeRmse;
+    std::printf(
+        "at rest: %u samples in %.2f s, %.1f ms each, %.1f densities a pixel; relative RMSE %.4f to %u "
+        "samples\n",
+        stats.samples, seconds, stats.sampleMilliseconds, stats.densitySamplesPerPixel, error,
+        viewer_->stats(Side::edited).samples);
+    std::printf("GPU bytes in all %.2f MB\n", static_cast<double>(viewer_->gpuBytes()) * 1e-6);
+  }
+
+ private:
+  static constexpr unsigned kCompareSamples = 48;
+
+  void restart() { viewer_->restart(Side::edited, {view_, View::radiance, {}, kWidth, kHeight}); }
+
+  void rest(unsigned samples, double seconds) {
+    constexpr double kNoTolerance = 1e-9;
+    viewer_->setGoal({kNoTolerance, samples});
+    const auto start = Clock::now();
+    constexpr double kSlice = 0.1;
+    while (secondsSince(start) < seconds && viewer_->stats(Side::edited).samples < samples)
+      viewer_->work(std::min(kSlice, seconds - secondsSince(start)));
+  }
+
+  EglContext context_;
+  std::shared_ptr<const BrickVolume> bricks_;
+  ViewedScene view_;
+  std::optional<Viewer> viewer_;
+  GlTexture screen_;
+  GlFramebuffer framebuffer_;
+};
+
+}  // namespace
+}  // namespace nephele
+
+int main(int argc, char** argv) {
+  return nephele::runGuarded([&] {
+    if (argc != 3 && !(argc == 5 && std::strcmp(argv[3], "--rest") == 0))
+      throw nephele::InputError({}, "usage: nephele_moving FILE.vdb SCENE.yaml [--rest N]");
+    constexpr unsigned kRestSamples = 1024;
+    nephele::Bench bench(argv[1], argv[2]);
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);
+    bench.orbit();
+    bench.settle(argc == 5 ? static_cast<unsigned>(std::stoul(argv[4])) : kRestSamples);
+    return 0;
+  });
+}
