@@ -108,9 +108,10 @@ std::string drawChart(const std::vector<ChartPanel>& panels, const std::string& 
   for (const auto& [terminal, ending] : kinds) {
     const std::string path = folder + "/" + stem + ending;
     int status = 0;
-    writeWhole(path, [&](const std::string& temporary) {
+    // Named anew: clang 14 captures no structured binding.
+    writeWhole(path, [&, kind = terminal](const std::string& temporary) {
       std::ofstream(temporary, std::ios::binary);  // stays empty where gnuplot fails
-      status = runGnuplot(gnuplotScript(panels, terminal, temporary));
+      status = runGnuplot(gnuplotScript(panels, kind, temporary));
     });
     if (status != 0) {
       std::remove(path.c_str());
