@@ -16,6 +16,7 @@
 #include "preview/measure/compare.h"
 #include "preview/method.h"
 #include "preview/resolve.h"
+#include "preview/temperature.h"
 #include "scene/light_model.h"
 #include "scene/presets.h"
 
@@ -115,7 +116,8 @@ class Sequence {
 
   void frame(const std::string& in, const std::string& out) {
     const auto start = Clock::now();
-    const BrickVolume bricks = openVolume(in, options_.grid);
+    BrickVolume bricks = openVolume(in, options_.grid);
+    addTemperature(bricks, scene_.emission);
     totals_.secondsLoad += secondsSince(start);
     if (!view_) {
       std::string sentence;

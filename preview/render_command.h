@@ -55,8 +55,8 @@ void writePicture(const std::string& path, Picture picture, const ViewedScene& v
                   bool aov);
 
 /// The exposure at which the medium's bright parts (95th percentile of radiance over alpha, where alpha
-/// exceeds ½) are shown at 0.88 of white before the transfer function, within ±16 EV; 0 where nothing of it is
-/// lit.
+/// exceeds ½) are shown at 0.88 of white before the transfer function, within ±16 EV; 0 where nothing of it
+/// is lit.
 double chooseExposure(const Picture& picture);
 
 /// The exposure that the options ask for: as given, else 0 with a scene, else chosen from the picture and

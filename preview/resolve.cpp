@@ -99,8 +99,8 @@ Camera frameCamera(const BrickVolume& bricks, const dvec3& up, double fov, doubl
     corners[i] = dvec3(bricks.worldFromIndex * glm::dvec4(index, 1.0));
     centre += 0.125 * corners[i];
   }
-  // From the side, so that a light over either shoulder models the form, 20 degrees round; and from 13 degrees
-  // below, as clouds are seen: sky stands behind them.
+  // From the side, so that a light over either shoulder models the form, 20 degrees round; and from 13
+  // degrees below, as clouds are seen: sky stands behind them.
   constexpr double kAside = 1.5, kBack = 4.0, kAbove = -0.95;
   const dvec3 right(1.0, 0.0, 0.0);
   const dvec3 front = glm::cross(right, up);  // −Y where Z is up, +Z where Y is up

@@ -35,10 +35,10 @@ vec4 mixedFetch(sampler3D volume, ivec3 t, vec3 f) {
   return mix(y0, y1, f.z);
 }
 
-float brickDensity(uint word, vec3 position) {
+float brickValue(sampler3D bricks, uint word, vec3 position) {
   // A position a hair outside the brick reads on along its outermost cell.
   ivec3 cell = clamp(ivec3(floor(position)), ivec3(0), ivec3(kBrickSamples - 2));
-  return max(0.0, mixedFetch(atlas, atlasCorner(word) + cell, position - vec3(cell)).r);
+  return max(0.0, mixedFetch(bricks, atlasCorner(word) + cell, position - vec3(cell)).r);
 }
 
 vec4 cacheFetch(sampler3D cache, vec3 texel) {
@@ -46,16 +46,18 @@ vec4 cacheFetch(sampler3D cache, vec3 texel) {
   return mixedFetch(cache, cell, texel - vec3(cell));
 }
 #else
-float brickDensity(uint word, vec3 position) {
+float brickValue(sampler3D bricks, uint word, vec3 position) {
   // A texel's centre lies at its index plus a half.
   vec3 texel = vec3(atlasCorner(word)) + clamp(position, 0.0, float(kBrickSamples - 1)) + 0.5;
-  return textureLod(atlas, texel / vec3(textureSize(atlas, 0)), 0.0).r;
+  return textureLod(bricks, texel / vec3(textureSize(bricks, 0)), 0.0).r;
 }
 
 vec4 cacheFetch(sampler3D cache, vec3 texel) {
   return textureLod(cache, (texel + 0.5) / vec3(textureSize(cache, 0)), 0.0);
 }
 #endif
+
+float brickDensity(uint word, vec3 position) { return brickValue(atlas, word, position); }
 
 float cachedColumn(vec3 texel) { return cacheFetch(columnCache, texel).r; }
 

@@ -23,6 +23,14 @@ layout(location = 2) out vec4 outDepth;          // weighted depth, its weight, 
 #include "shared/powder.glsl"
 #include "shared/step_integral.glsl"
 #include "shared/walk.glsl"
+#if NPH_HEAT
+#include "heat.glsl"
+#include "shared/emission.glsl"
+#define NPH_EMISSION true
+#else
+#define NPH_EMISSION false
+vec3 emissionAt(vec3 position) { return vec3(0.0); }
+#endif
 #include "shared/light_cache.glsl"
 #include "shared/environment.glsl"
 #include "shared/light.glsl"

@@ -6,6 +6,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,10 @@ struct BrickVolume {
   std::map<std::string, std::string> metadata;  // the file's and the grid's, as text
   std::vector<std::string> notes;               // what had to be left out or assumed, as sentences
 
+  /// Temperatures, bricks of their own with an index and a transform of their own; nullptr where none were
+  /// asked for (preview/temperature.h).
+  std::shared_ptr<const BrickVolume> temperature;
+
   size_t slotCount() const { return slotMaximum.size(); }
   bool empty() const { return slotMaximum.empty(); }
 };
@@ -52,6 +57,9 @@ double densityAt(const BrickVolume& bricks, const glm::dvec3& index);
 /// singular, values that are not finite, and an index that would need more than 1 GiB. Negative values count
 /// as 0 and a note says so.
 BrickVolume loadBricks(const std::string& path, const std::string& gridName = {});
+
+/// Whether a .vdb holds a float grid of that name. Throws as loadBricks does for the file itself.
+bool hasFloatGrid(const std::string& path, const std::string& gridName);
 
 /// Makes bricks of a dense array for tests: values x fastest, `size` samples starting at index `origin`;
 /// background 0.

@@ -307,6 +307,12 @@ void readUpAxis(BrickVolume& volume) {
 
 }  // namespace
 
+bool hasFloatGrid(const std::string& path, const std::string& gridName) {
+  const VdbHeader header = readVdbHeader(path);
+  const VdbGridEntry* entry = findGrid(header, gridName);
+  return entry != nullptr && entry->type == FloatGrid::gridType();
+}
+
 BrickVolume loadBricks(const std::string& path, const std::string& gridName) {
   BrickVolume volume;
   volume.path = path;

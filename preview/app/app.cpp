@@ -12,6 +12,7 @@
 #include "preview/app/desk.h"
 #include "preview/app/panel.h"
 #include "preview/app/window.h"
+#include "preview/temperature.h"
 
 namespace nephele {
 namespace {
@@ -48,7 +49,13 @@ class App {
   }
 
  private:
-  static BrickVolume readVolume(const VolumeKey& key) { return loadBricks(key.path, key.grid); }
+  static BrickVolume readVolume(const VolumeKey& key) {
+    BrickVolume volume = loadBricks(key.path, key.grid);
+    Emission emission;
+    emission.grid = key.heat;
+    addTemperature(volume, emission);
+    return volume;
+  }
 
   void turn() {
     const Hands hands = window_.poll(sleepSeconds());

@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "preview/app/scene_file.h"
 #include "preview/resolve.h"
+#include "preview/temperature.h"
 
 namespace nephele {
 namespace {
@@ -26,9 +27,13 @@ constexpr double kLongestFrame = 0.25;  // beyond it was rest, and no frame
 FirstVolume openFirst(const RenderOptions& options) {
   FirstVolume first;
   first.scene = openScene(options.scene, options.stepVoxels);
-  first.key = {options.file, options.grid};
+  first.key = {options.file, options.grid, first.scene.emission.grid};
   first.stamp = stampOf(options.file);
-  first.volume = std::make_shared<const BrickVolume>(openVolume(options.file, options.grid));
+  BrickVolume volume = openVolume(options.file, options.grid);
+  Emission emission = first.scene.emission;
+  if (emission.on == Switch(false)) emission.on.reset();  // the panel may switch it on
+  addTemperature(volume, emission);
+  first.volume = std::make_shared<const BrickVolume>(std::move(volume));
   return first;
 }
 

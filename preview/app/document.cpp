@@ -33,6 +33,7 @@ Document::Document(VolumeKey key, std::shared_ptr<const BrickVolume> volume, std
                    ReadAhead& reader)
     : reader_(reader),
       grid_(key.grid),
+      heat_(key.heat),
       volume_(std::move(volume)),
       frames_(findSequence(key.path)),
       grids_(gridsOf(key.path)),
@@ -42,7 +43,9 @@ Document::Document(VolumeKey key, std::shared_ptr<const BrickVolume> volume, std
   wish();
 }
 
-VolumeKey Document::keyOf(int frame) const { return {frames_[static_cast<size_t>(frame)].path, grid_}; }
+VolumeKey Document::keyOf(int frame) const {
+  return {frames_[static_cast<size_t>(frame)].path, grid_, heat_};
+}
 
 void Document::wish() {
   std::vector<VolumeKey> keys;
@@ -54,12 +57,12 @@ void Document::wish() {
 }
 
 void Document::open(const std::string& path) {
-  pending_ = VolumeKey{path, {}};
+  pending_ = VolumeKey{path, {}, heat_};
   wish();
 }
 
 void Document::chooseGrid(const std::string& grid) {
-  pending_ = VolumeKey{keyOf(timeline_.shown()).path, grid};
+  pending_ = VolumeKey{keyOf(timeline_.shown()).path, grid, heat_};
   wish();
 }
 

@@ -64,6 +64,7 @@ class Document {
 
   ReadAhead& reader_;
   std::string grid_;  // as asked for: empty is the file's own choice
+  std::string heat_;  // the temperatures' grid
   std::shared_ptr<const BrickVolume> volume_;
   std::vector<SequenceFrame> frames_;
   std::vector<GridChoice> grids_;

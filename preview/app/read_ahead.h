@@ -17,10 +17,12 @@
 
 namespace nephele {
 
-/// One grid of one file; an empty grid is the file's own choice.
+/// One grid of one file; an empty grid is the file's own choice. `heat` names the temperatures to read with
+/// it where the file has them.
 struct VolumeKey {
   std::string path;
   std::string grid;
+  std::string heat = "temperature";
   auto operator<=>(const VolumeKey&) const = default;
 };
 

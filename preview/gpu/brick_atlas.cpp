@@ -10,6 +10,8 @@
 namespace nephele {
 namespace {
 
+constexpr GLuint kHeatUnit = 10;  // and the next, as shaders/heat.glsl declares them
+
 int volumeLimit() {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
@@ -67,6 +69,10 @@ BrickAtlas::BrickAtlas(const BrickVolume& bricks, Filter filter)
   setVolumeFilter(atlas_.name(), filter);
   uploadAtlas();
   index_ = makeIndexTexture(layout_.words, gpuBytes_);
+  if (bricks.temperature) {
+    heat_ = std::make_unique<BrickAtlas>(*bricks.temperature, filter);
+    gpuBytes_ += heat_->gpuBytes();
+  }
 }
 
 void BrickAtlas::uploadAtlas() {
@@ -98,6 +104,9 @@ void BrickAtlas::uploadAtlas() {
 void BrickAtlas::bind() const {
   glBindTextureUnit(0, atlas_.name());
   glBindTextureUnit(1, index_.name());
+  if (!heat_) return;
+  glBindTextureUnit(kHeatUnit, heat_->atlas_.name());
+  glBindTextureUnit(kHeatUnit + 1, heat_->index_.name());
 }
 
 }  // namespace nephele

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "preview/filter.h"
@@ -23,12 +24,12 @@ void setVolumeFilter(GLuint texture, Filter filter);
 /// The volume laid out (volume/brick_layout.h) in two textures: a 3-D atlas (R32F) and the index's words.
 class BrickAtlas {
  public:
-  /// Uploads all bricks, which must outlive it. Throws InputError where the grid has more bricks than the
-  /// driver's textures hold, and WorldError where the GPU's memory does not suffice. An empty volume makes
-  /// textures of one brick and one word.
+  /// Uploads all bricks and those of its temperatures, which must outlive it. Throws InputError where the
+  /// grid has more bricks than the driver's textures hold, and WorldError where the GPU's memory does not
+  /// suffice. An empty volume makes textures of one brick and one word.
   BrickAtlas(const BrickVolume& bricks, Filter filter);
 
-  /// Binds the atlas to texture unit 0 and the index to unit 1.
+  /// Binds the atlas to texture unit 0 and the index to unit 1; temperatures to units 10 and 11.
   void bind() const;
   Filter filter() const { return filter_; }
   uint64_t gpuBytes() const { return gpuBytes_; }
@@ -43,6 +44,7 @@ class BrickAtlas {
   BrickLayout layout_;
   GlTexture atlas_;
   GlTexture index_;
+  std::unique_ptr<BrickAtlas> heat_;  // of the volume's temperatures, where it has some
   uint64_t gpuBytes_ = 0;
   uint64_t serial_;
 };

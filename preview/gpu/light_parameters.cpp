@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/matrix.hpp>
 
 #include "base/error.h"
+#include "scene/blackbody.h"
 #include "scene/light_model.h"
 #include "scene/sky.h"
 
@@ -80,6 +82,44 @@ void setEnvironment(shared::MarchParameters& p, const ViewedScene& view) {
   p.skyForward = row(axes.forward, environment.show ? 1.0 : 0.0);
 }
 
+/// From the density's index space, relative to its brick grid's corner, to the temperatures', relative to
+/// theirs.
+void setHeatPlaces(shared::MarchParameters& p, const BrickVolume& bricks, const BrickVolume& heat) {
+  const glm::dmat4 heatFromIndex = glm::inverse(heat.worldFromIndex) * bricks.worldFromIndex;
+  const glm::dvec4 corner(dvec3(bricks.brickMin * kBrickCells), 1.0);
+  const dvec3 origin = dvec3(heatFromIndex * corner) - dvec3(heat.brickMin * kBrickCells);
+  vec4* const rows[] = {&p.heatX, &p.heatY, &p.heatZ};
+  for (int axis = 0; axis < 3; ++axis)
+    *rows[axis] =
+        row(dvec3(heatFromIndex[0][axis], heatFromIndex[1][axis], heatFromIndex[2][axis]), origin[axis]);
+  p.heatCount = glm::ivec4(heat.brickCount, 0);
+}
+
+void setBlackbody(shared::MarchParameters& p) {
+  // Of shaders/shared/emission.glsl; the first node, infinitely hot, stands at a temperature far beyond all
+  // light.
+  constexpr double kPlanckKelvin = 23586.5, kHottestKelvin = 1e8;
+  for (int i = 0; i < shared::kBlackbodyNodes; ++i) {
+    const double place = static_cast<double>(i) / (shared::kBlackbodyNodes - 1);
+    // The coldest node is a hair warmer than what counts as invisible.
+    constexpr double kHair = 1e-9;
+    const double kelvin = std::min(kColdestKelvin / (place * place) * (1.0 + kHair), kHottestKelvin);
+    p.blackbody[i] = row(std::expm1(kPlanckKelvin / kelvin) * vectorOf(blackbodyRadiance(kelvin)));
+  }
+}
+
+void setEmission(shared::MarchParameters& p, const ViewedScene& view, const BrickVolume& bricks) {
+  const Emission& emission = view.scene.emission;
+  const bool on = emission.on.value_or(true) && bricks.temperature && !bricks.temperature->empty() &&
+                  view.medium.sigmaA != Rgb{};
+  p.emission =
+      on ? vec4(static_cast<float>(emission.scale), static_cast<float>(emission.temperatureScale), 0.0f, 0.0f)
+         : vec4(0.0f);
+  if (!on) return;
+  setHeatPlaces(p, bricks, *bricks.temperature);
+  setBlackbody(p);
+}
+
 }  // namespace
 
 void setLightParameters(shared::MarchParameters& p, const ViewedScene& view, const BrickVolume& bricks) {
@@ -94,6 +134,7 @@ void setLightParameters(shared::MarchParameters& p, const ViewedScene& view, con
   p.counts.y = light.octaveCount;
   setChord(p, bricks, light.transmittance);
   setEnvironment(p, view);
+  setEmission(p, view, bricks);
 }
 
 }  // namespace nephele

@@ -18,6 +18,9 @@ struct SkyArrays {
 ///   float density(uint word, vec3 position) const     position in [0, 8] voxels from the brick's corner
 ///   uint block(ivec3 block) const, float column(vec3 texel) const, vec4 sky(int part, vec3 texel) const
 ///                                                     asked where parameters.cache or cacheShape say so
+///   uint heatWord(ivec3 brick) const, float heatValue(uint word, vec3 position) const
+///                                                     the same of temperatures, where parameters.emission is
+///                                                     on
 /// Thread-safe to copy and use where Source is.
 template <class Source>
 struct March {
@@ -33,12 +36,17 @@ struct March {
   vec3 environmentTexel(ivec2 texel) const { return skyArrays.texels[texel.y * params.skySize.x + texel.x]; }
   vec4 environmentCell(int cell) const { return skyArrays.cells[cell]; }
 
+  uint heatWord(ivec3 brick) const { return bricks->heatWord(brick); }
+  float heatValue(uint word, vec3 position) const { return bricks->heatValue(word, position); }
+
+#define NPH_EMISSION (params.emission.x > 0.0f)
 #define NPH_CACHED (params.cache.x > 0.0f)
 #define NPH_NEAR (params.cache.w > 0.0f)
 #define NPH_POINTS true
 #define NPH_POWDER true
 #define NPH_LOBES true
 #define NPH_SKY (skyKind() == kSkyNone ? 0 : params.cacheShape.y > 0 ? 1 : 2)
+#include "shaders/shared/emission.glsl"
 #include "shaders/shared/environment.glsl"
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/light_cache.glsl"
@@ -46,6 +54,7 @@ struct March {
 #include "shaders/shared/march.glsl"
 #include "shaders/shared/walk.glsl"
 #undef NPH_CACHED
+#undef NPH_EMISSION
 #undef NPH_NEAR
 #undef NPH_POINTS
 #undef NPH_POWDER
@@ -53,11 +62,13 @@ struct March {
 #undef NPH_SKY
 };
 
-/// A source without a light cache, for marches whose parameters ask for none.
+/// A source without a light cache and temperatures, for marches whose parameters ask for none.
 struct NoCache {
   uint block(ivec3) const { return 0u; }
   float column(vec3) const { return 0.0f; }
   vec4 sky(int, vec3) const { return vec4(0.0f); }
+  uint heatWord(ivec3) const { return 0u; }
+  float heatValue(uint, vec3) const { return 0.0f; }
 };
 
 }  // namespace nephele::shared

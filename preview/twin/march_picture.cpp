@@ -46,8 +46,17 @@ struct Volume {
   }
 };
 
+/// A sample of a layout's bricks. A position a hair outside the brick reads on along its outermost cell.
+float brickValue(const BrickLayout& layout, uint word, const vec3& position) {
+  const ivec3 cell = clamp(ivec3(floor(position)), ivec3(0), ivec3(kBrickCells - 1));
+  const float* brick = layout.bricks[flat(layout.places, brick_word::place(word))];
+  const auto at = [brick](const ivec3& p) { return brick[flat(ivec3(kBrickSamples), p)]; };
+  return max(0.0f, mixed(at, cell, position - vec3(cell)));
+}
+
 struct ArraySource {
   const BrickLayout* layout;
+  const BrickLayout* heat;  // of the temperatures, or nullptr
   Volume<float> columns;
   Volume<vec4> skies;
 
@@ -58,13 +67,9 @@ struct ArraySource {
     return skies.read(texel + vec3(0.0f, 0.0f, static_cast<float>(part * (skies.size.z / 2))));
   }
 
-  float density(uint word, vec3 position) const {
-    // A position a hair outside the brick reads on along its outermost cell.
-    const ivec3 cell = clamp(ivec3(floor(position)), ivec3(0), ivec3(kBrickCells - 1));
-    const float* brick = layout->bricks[flat(layout->places, brick_word::place(word))];
-    const auto at = [brick](const ivec3& p) { return brick[flat(ivec3(kBrickSamples), p)]; };
-    return max(0.0f, mixed(at, cell, position - vec3(cell)));
-  }
+  float density(uint word, vec3 position) const { return brickValue(*layout, word, position); }
+  uint heatWord(ivec3 brick) const { return heat->words[flat(heat->brickCount, brick)]; }
+  float heatValue(uint word, vec3 position) const { return brickValue(*heat, word, position); }
 };
 
 /// What shaders/light_cache.comp fills for the exact filter.
@@ -109,7 +114,8 @@ std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const MarchParame
   std::vector<TwinPixel> pixels(static_cast<size_t>(width) * static_cast<size_t>(height));
   if (bricks.empty() && parameters.skyForward.w <= 0.0f) return pixels;
   const BrickLayout layout = layOut(bricks);
-  ArraySource source{&layout, {}, {}};
+  const BrickLayout heat = bricks.temperature ? layOut(*bricks.temperature) : BrickLayout{};
+  ArraySource source{&layout, &heat, {}, {}};
   March<ArraySource> whole{parameters, &source, sky};
   whole.params.blockCount = ivec4(layout.blockCount, 0);
   whole.params.cacheShape.z = layout.blockPlaces.z * parameters.cacheShape.x;

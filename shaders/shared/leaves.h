@@ -30,6 +30,8 @@ static_assert(sizeof(vec4) == kRowBytes && sizeof(ivec4) == kRowBytes);
 static_assert(sizeof(LightParameters) == kRowsPerLight * kRowBytes);
 static_assert(offsetof(MarchParameters, counts) == 38 * kRowBytes);
 static_assert(offsetof(MarchParameters, lights) == kRowsBeforeLights * kRowBytes);
-static_assert(sizeof(MarchParameters) == (kRowsBeforeLights + kRowsPerLight * kMaxLights) * kRowBytes);
+inline constexpr size_t kRowsBehindLights = 5 + kBlackbodyNodes;
+static_assert(sizeof(MarchParameters) ==
+              (kRowsBeforeLights + kRowsPerLight * kMaxLights + kRowsBehindLights) * kRowBytes);
 
 }  // namespace nephele::shared

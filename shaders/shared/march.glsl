@@ -90,6 +90,7 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
       vec3 x = (rho * dt) * vec3(params.sigmaT);
       vec3 weight = before * (rho * dt) * stepIntegral(x);
       vec3 scattering = powderAt(origin + middle * direction, rho) * weight;
+      if (NPH_EMISSION) result.radiance += emissionAt(origin + middle * direction) * weight;
       share += scattering;
       place += dot(scattering, vec3(1.0f / 3.0f)) * middle;
       result.opticalDepth += x;

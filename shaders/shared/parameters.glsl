@@ -4,6 +4,7 @@
 NPH_CONST int kMaxLights = 8;
 NPH_CONST int kLightSun = 0;
 NPH_CONST int kLightPoint = 1;
+NPH_CONST int kBlackbodyNodes = 128;
 
 // Kinds of environment, in params.skyUp.w.
 NPH_CONST int kSkyNone = 0;
@@ -63,4 +64,10 @@ struct MarchParameters {
   ivec4 counts;      // x: lights. y: octaves beyond the first. w: 1 where steps start at random, 0 midway
   ivec4 brickCount;  // bricks along each axis. w: seed
   LightParameters lights[kMaxLights];
+  vec4 emission;   // x: factor, 0: off. y: kelvin per unit of the temperatures' grid
+  vec4 heatX;      // from index space to that grid's: each coordinate is dot(xyz, position) + w
+  vec4 heatY;
+  vec4 heatZ;
+  ivec4 heatCount; // bricks of that grid along each axis
+  vec4 blackbody[kBlackbodyNodes];  // what Planck's law at 610 nm leaves of Rec.709 radiance: see emission.glsl
 };

@@ -1,12 +1,14 @@
 // Looks and switches, the furnace value, presets, skies and their tables of directions.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 
 #include "base/error.h"
 #include "base/picture.h"
+#include "scene/blackbody.h"
 #include "scene/light_model.h"
 #include "scene/presets.h"
 #include "scene/sky.h"
@@ -99,6 +101,46 @@ TEST(Presets, EachIsASunUnderASky) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "error: unknown preset 'sunst'; did you mean 'sunset'?");
   }
+}
+
+/// CIE 1931 chromaticity of linear Rec.709.
+std::array<double, 2> chromaticity(const std::array<double, 3>& c) {
+  const double x = 0.4124564 * c[0] + 0.3575761 * c[1] + 0.1804375 * c[2];
+  const double y = 0.2126729 * c[0] + 0.7151522 * c[1] + 0.0721750 * c[2];
+  const double z = 0.0193339 * c[0] + 0.1191920 * c[1] + 0.9503041 * c[2];
+  return {x / (x + y + z), y / (x + y + z)};
+}
+
+TEST(Blackbody, HasTheChromaticitiesOfThePlanckianLocus) {
+  // CIE standard illuminant A is 2856 K; the others from the locus's table [Wyszecki and Stiles].
+  const struct {
+    double kelvin, x, y;
+  } rows[] = {{2856.0, 0.4476, 0.4074},
+              {4000.0, 0.3805, 0.3768},
+              {6500.0, 0.3135, 0.3237},
+              {10000.0, 0.2807, 0.2884}};
+  constexpr double kFitTolerance = 3e-3;  // the observer is a fit
+  for (const auto& row : rows) {
+    const auto xy = chromaticity(blackbodyRadiance(row.kelvin));
+    EXPECT_NEAR(xy[0], row.x, kFitTolerance) << row.kelvin;
+    EXPECT_NEAR(xy[1], row.y, kFitTolerance) << row.kelvin;
+  }
+}
+
+TEST(Blackbody, LuminanceIsOneAtTwoThousandKelvinAndFollowsWien) {
+  const auto luminance = [](double kelvin) {
+    const auto c = blackbodyRadiance(kelvin);
+    return 0.2126729 * c[0] + 0.7151522 * c[1] + 0.0721750 * c[2];
+  };
+  EXPECT_NEAR(luminance(kBlackbodyUnitKelvin), 1.0, 2e-3);  // what Rec.709 cannot show is cut
+  // Between near temperatures ln L changes as −c₂/λ · Δ(1/T), λ within what is seen.
+  const double slope = std::log(luminance(3000.0) / luminance(2900.0)) / (1.0 / 2900.0 - 1.0 / 3000.0);
+  EXPECT_GT(slope, 1.4388e4 / 0.62);
+  EXPECT_LT(slope, 1.4388e4 / 0.55);
+  EXPECT_EQ(luminance(500.0), 0.0);
+  EXPECT_EQ(luminance(0.0), 0.0);
+  EXPECT_EQ(luminance(-1.0), 0.0);
+  for (size_t c = 0; c < 3; ++c) EXPECT_GE(blackbodyRadiance(800.0)[c], 0.0);
 }
 
 TEST(Sky, AxesOfBothUps) {

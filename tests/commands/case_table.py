@@ -176,6 +176,8 @@ PREVIEW = [
     render("good.vdb", "--error needs --method reference", options="--size 16x9 --error 1%"),
     render("good.vdb", "'some' is no tolerance", options="--size 16x9 --method reference --error some"),
     render("good.vdb", "nowhere.yaml: error: no such file", options="--scene nowhere.yaml"),
+    render("good.vdb", "unknown preset 'sunst'; did you mean 'sunset'?", options="--scene sunst"),
+    render("good.vdb", "look: report", exit_code=0, options="--size 16x9 --scene moonlight"),
     render("good.vdb", "--size", options="--size 0x9"),
     says("preview good.vdb --render picture.gif", 2, "'picture.gif' should end in .exr or .png"),
     says("preview good.vdb --frames 1-2", 2, "--frames needs --render"),

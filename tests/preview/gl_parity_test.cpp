@@ -59,6 +59,14 @@ struct ParityCase {
       view.scene.look = Look::report;
       view.up = glm::normalize(glm::dvec3(0.1, 0.2, 1.0));
       environment.kind = Environment::Kind::ramp;
+      // Temperatures on a coarser grid, turned against the density's.
+      glm::dmat4 hotPlace = worldFromIndex * 1.7;
+      hotPlace[0][2] += 0.01;
+      hotPlace[3] = glm::dvec4(centre, 1.0);
+      bricks.temperature = std::make_shared<const BrickVolume>(
+          volumeOf(glm::ivec3(36), glm::ivec3(-18), hotPlace, [](const glm::dvec3& p) {
+            return 1400.0 + 900.0 * std::sin(0.4 * p.x + 0.1 * p.z) * std::cos(0.3 * p.y);
+          }));
     } else if (lit == Lit::map) {
       view.scene.lightTransmittance = LightTransmittance::chord;
       environment.kind = Environment::Kind::exr;
@@ -145,6 +153,7 @@ TEST(GlParity, EachMutantBreaksTheGate) {
   const char* walk = "shared/walk.glsl";
   const char* light = "shared/light.glsl";
   const char* phase = "shared/phase.glsl";
+  const char* emission = "shared/emission.glsl";
   const char* powder = "shared/powder.glsl";
   const char* sky = "shared/environment.glsl";
   const char* cache = "shared/light_cache.glsl";
@@ -182,6 +191,15 @@ TEST(GlParity, EachMutantBreaksTheGate) {
        {sky, "above ? params.skyHorizon.w", "above ? 1.01f * params.skyHorizon.w"},
        Lit::report},
       {"the ramp upside down", {sky, "bool above = sine >= 0.0f", "bool above = sine <= 0.0f"}, Lit::report},
+      {"emission from scattering",
+       {emission, "vec3(params.sigmaT) - vec3(params.sigmaS)", "vec3(params.sigmaS)"},
+       Lit::report},
+      {"temperatures a tenth of a voxel off",
+       {emission, "+ params.heatY.w", "+ params.heatY.w + 0.1f"},
+       Lit::report},
+      {"the table a node off",
+       {emission, "params.blackbody[node]", "params.blackbody[node + 1]"},
+       Lit::report},
       {"the chord's square root left out",
        {"shared/chord.glsl", "sqrt(inside / dd)", "inside / dd"},
        Lit::map},

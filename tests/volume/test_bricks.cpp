@@ -245,6 +245,9 @@ TEST(Bricks, NotesSayWhatWasAssumed) {
                                       "grid 'smoke' holds negative values (down to -2); they count as 0"}));
   EXPECT_EQ(densityAt(bricks, {1.0, 1.0, 1.0}), 0.0);
   EXPECT_EQ(bricks.metadata.at("creator"), creatorName());
+  EXPECT_TRUE(hasFloatGrid(scratch.file("a.vdb"), "smoke"));
+  EXPECT_FALSE(hasFloatGrid(scratch.file("a.vdb"), "density"));
+  EXPECT_THROW(hasFloatGrid(scratch.file("missing.vdb"), "smoke"), InputError);
   EXPECT_EQ(bricks.metadata.at("class"), "fog volume");
   write(scratch.file("empty.vdb"), makeFogGrid("density", 1.0, false));
   const BrickVolume empty = loadBricks(scratch.file("empty.vdb"));
