@@ -9,12 +9,27 @@
 namespace nephele {
 namespace {
 
+bool cacheWidgets(MarchSettings& march) {
+  constexpr double kBlock = 16.0;  // voxels of a block of the cache: the scene's own bounds
+  constexpr int kMostSteps = 16;
+  bool changed = ImGui::Checkbox("light cache", &march.lightCache);
+  if (!march.lightCache) return changed;
+  changed |= widgets::slider("light every", march.cacheVoxels, 1.0, kBlock, "%.2f voxels");
+  changed |= widgets::slider("sky every", march.skyCacheVoxels, 1.0, kBlock, "%.2f voxels");
+  changed |= widgets::slider("marched first", march.cacheNearVoxels, 0.0, kBlock, "%.1f voxels");
+  changed |=
+      ImGui::SliderInt("in steps", &march.cacheNearSteps, 0, kMostSteps, "%d", ImGuiSliderFlags_AlwaysClamp);
+  return changed;
+}
+
 bool marchWidgets(MarchSettings& march) {
-  constexpr double kShortest = 0.05, kLongest = 16.0;
+  constexpr double kShortest = 0.05, kLongest = 16.0, kLeastGiveUp = 1e-6, kMostGiveUp = 0.1;
   bool changed = widgets::slider("step", march.stepVoxels, kShortest, kLongest, "%.2f voxels", true);
   changed |= widgets::slider("shadow step", march.shadowStepVoxels, kShortest, kLongest, "%.2f voxels", true);
   changed |= widgets::slider("shadow growth", march.shadowGrowth, 1.0, 2.0, "%.2f");
-  return changed;
+  changed |= ImGui::Checkbox("adaptive steps", &march.adaptive);
+  changed |= widgets::slider("give up below", march.giveUp, kLeastGiveUp, kMostGiveUp, "%.0e", true);
+  return cacheWidgets(march) || changed;
 }
 
 bool viewWidgets(UiState& state) {

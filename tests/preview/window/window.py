@@ -53,9 +53,13 @@ class Window:
         self.screen = x11.Screen()
         self.stats_path = folder / "stats.json"
         self.seen = 0  # pictures begun
-        self.id = self.until(self.find, "no window appeared")
-        x11.xdotool("windowfocus", self.id)
-        self.settled()
+        try:
+            self.id = self.until(self.find, "no window appeared")
+            x11.xdotool("windowfocus", self.id)
+            self.settled()
+        except BaseException:
+            self.kill()
+            raise
 
     def find(self):
         found = x11.xdotool("search", "--pid", self.process.pid, "--name", "Nephele").split()
