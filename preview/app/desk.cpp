@@ -1,6 +1,8 @@
 // Files, settings and pictures of the desk. Depends on all of preview, volume and nlohmann_json.
 #include "preview/app/desk.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -21,6 +23,14 @@ constexpr double kNoticeSeconds = 8.0;
 constexpr double kFirstPictureSeconds = 0.03;
 constexpr double kSmoothing = 0.1;      // of the frame rate: the share of the newest frame
 constexpr double kLongestFrame = 0.25;  // beyond it was rest, and no frame
+
+/// Volumes come and go, and glibc keeps what they leave between smaller blocks: with every file the process
+/// would hold a little more.
+void returnFreeMemory() {
+#if defined(__GLIBC__)
+  ::malloc_trim(0);
+#endif
+}
 
 }  // namespace
 
@@ -173,6 +183,8 @@ void Desk::takeNews(const DocumentNews& news) {
     orbit_ = OrbitCamera(firstCamera_);
     restart();
   }
+  // While a sequence plays, its next frame takes the place of this one.
+  if (!document_.timeline().playing()) returnFreeMemory();
   writeStats();
 }
 

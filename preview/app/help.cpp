@@ -7,6 +7,7 @@
 namespace nephele {
 
 void helpWindow(bool& open) {
+  const ImVec4 kKeyColour(0.62f, 0.80f, 1.0f, 1.0f);
   constexpr float kMargin = 16.0f;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * screen.x, 0.5f * screen.y}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -16,9 +17,9 @@ void helpWindow(bool& open) {
     for (const KeyRow& row : keyRows()) {
       if (row.how[0] == '\0') continue;  // a further key of the line before
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(row.how);
+      ImGui::TextColored(kKeyColour, "%s", row.how);
       ImGui::TableNextColumn();
-      ImGui::TextDisabled("%s", row.what);
+      ImGui::TextUnformatted(row.what);
     }
     ImGui::EndTable();
   }

@@ -31,7 +31,7 @@ void setStyle() {
 
 /// Narrow and no higher than the window, so that the cloud has room.
 void mainPanel(UiState& state, const UiFacts& facts, UiWishes& wishes) {
-  constexpr float kNarrowest = 230.0f, kWidest = 300.0f, kShare = 0.28f, kLabelShare = 0.40f;
+  constexpr float kNarrowest = 230.0f, kWidest = 300.0f, kShare = 0.25f, kLabelShare = 0.40f;
   constexpr float kSmallScreen = 800.0f;  // below, the panel would cover the cloud: it opens folded
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float width = std::clamp(kShare * screen.x, kNarrowest, kWidest);
