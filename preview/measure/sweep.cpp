@@ -255,11 +255,13 @@ SweepResult sweep(const BrickVolume& bricks, const ViewedScene& given, const Swe
     if (viewsDone == 0) result.shots.push_back({"truth", truth});
     // The first view may take half of the time: others are to follow.
     const double until = viewsDone == 0 ? 0.5 * options.seconds : options.seconds;
-    double rate = 0.0;  // dearest seconds per guessed cost so far
+    std::map<std::pair<std::string, bool>, double>
+        rates;  // seconds per guessed cost, by method and kind of light
     for (size_t s = 0; s < result.settings.size(); ++s) {
       progress.advance();
       if (!tried[s]) continue;
       const Setting& setting = result.settings[s];
+      double& rate = rates[{setting.method, setting.march.lightCache}];
       if (viewsDone == 0 && secondsSince(start) + rate * guessedCost(setting) > until) {
         tried[s] = false;
         result.leftOut.push_back("'" + setting.name + "'");
@@ -274,7 +276,7 @@ SweepResult sweep(const BrickVolume& bricks, const ViewedScene& given, const Swe
                         compareWithHalves(picture, truth)};
       result.single.push_back(measured);
       lastCost[s] = secondsSince(before);
-      rate = std::max(rate, 1e-3 * cost.milliseconds / guessedCost(setting));
+      rate = 1e-3 * cost.milliseconds / guessedCost(setting);
       if (viewsDone == 0) result.shots.push_back({setting.name, picture});
     }
     ++viewsDone;
