@@ -77,7 +77,7 @@ class Writer : public openvdb::io::Archive {
   Writer() { setCompression(kCompression); }
   Ptr copy() const override { return Ptr(new Writer(*this)); }
 
-  void write(std::ostream& stream, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) {
+  void writeAll(std::ostream& stream, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) {
     auto settings = std::make_shared<openvdb::io::StreamMetadata>();
     openvdb::io::setStreamMetadataPtr(stream, settings, /*transfer=*/false);
     openvdb::io::setDataCompression(stream, kCompression);
@@ -121,7 +121,7 @@ class Writer : public openvdb::io::Archive {
 }  // namespace
 
 void writeVdbTo(std::ostream& stream, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) {
-  Writer().write(stream, grids, metadata);
+  Writer().writeAll(stream, grids, metadata);
 }
 
 }  // namespace nephele
