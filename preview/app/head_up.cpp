@@ -29,7 +29,7 @@ std::string figures(const UiFacts& facts) {
   } else {
     add("%.0f ms  %u", s.sampleMilliseconds, s.samples);
     if (s.noise > 0.0) add("/%u", s.samplesWanted);
-    add(" spp");
+    add("%s", " spp");
     if (s.noise > 0.0) add("  noise %.2f %%", kPercent * s.noise);
   }
   add("  %.1f MiB", static_cast<double>(facts.gpuBytes) / kMebibyte);

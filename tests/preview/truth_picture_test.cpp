@@ -140,7 +140,8 @@ TEST(TruthPicture, PlaceScaleAndTurnOfTheWorldDoNotMatter) {
                                                       {"turned", glm::rotate(one, 1.0, axis)},
                                                       {"small", glm::scale(one, glm::dvec3(1e-6))},
                                                       {"large", glm::scale(one, glm::dvec3(1e6))}};
-  for (const auto& [name, move] : moves) {
+  for (const auto& [name, matrix] : moves) {
+    const glm::dmat4& move = matrix;  // clang 14 captures no structured binding
     const auto place = [&](const glm::dvec3& p) { return glm::dvec3(move * glm::dvec4(p, 1.0)); };
     const auto turn = [&](const glm::dvec3& d) { return glm::normalize(glm::dmat3(move) * d); };
     const double scale = glm::length(glm::dmat3(move) * glm::dvec3(1, 0, 0));
