@@ -38,10 +38,14 @@ class Placed final : public Field {
   Interval bounds(const Box& box) const override {
     const Box local =
         imageOf(box, placement_.localFromWorld, -(placement_.localFromWorld * placement_.offset));
-    // Offsets from a block's corner are floats, of up to the box's size, mixed from three.
+    // Offsets from a block's corner are floats, of up to the box's size and its distance from the origin,
+    // mixed from three.
     constexpr double kRoom = 2e-6;
-    const glm::dvec3 size = local.high - local.low;
-    return input_->bounds(grown(local, kRoom * std::max({size.x, size.y, size.z})));
+    double size = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      size = std::max(
+          {size, local.high[axis] - local.low[axis], std::abs(local.low[axis]), std::abs(local.high[axis])});
+    return input_->bounds(grown(local, kRoom * size));
   }
 
   Box support() const override {

@@ -197,7 +197,8 @@ TEST(Periods, RepeatBitByBitInEveryTileableRow) {
   int rows = 0;
   for (const FieldRow& row : fieldTable()) {
     if (std::none_of(row.parameters.begin(), row.parameters.end(),
-                     [](const Parameter& p) { return p.name == "period"; }))
+                     [](const Parameter& p) { return p.name == "period"; }) ||
+        row.name == "warp")  // its displacement repeats, but its input need not
       continue;
     ++rows;
     std::mt19937_64 random(8);
