@@ -76,6 +76,10 @@ struct Along {
   VU key[CellsAround::kEdge];
   V gap[CellsAround::kEdge];
 
+  // Written out, so that it is compiled for this target: g++ makes its own for the machine's least, which on
+  // ARM may not call a vector's.
+  HWY_INLINE Along() {}
+
   HWY_INLINE void set(const float* places, int32_t cell, Frame frame, uint32_t prime) {
     const Tag d;
     const UTag du;
