@@ -1,7 +1,7 @@
 // What is lit and from where: camera, medium, the terms of the light, lights, environment, look, march; and
 // YAML both ways. What is on once the look has decided: scene/light_model.h.
-// Depends on base alone. Lengths in world units; angles in radians here, in degrees in files. Names and
-// defaults: DESIGN.md, section 1.
+// Depends on base alone. Lengths in world units; angles in radians here, in degrees in files. Structs are
+// equal where all members are. Names and defaults: DESIGN.md, section 1.
 #pragma once
 
 #include <array>
@@ -23,6 +23,7 @@ struct Camera {
   glm::dvec3 target{0.0};
   glm::dvec3 up{0.0, 0.0, 1.0};
   double fov = 0.6108652381980153;  // 35 degrees
+  bool operator==(const Camera&) const = default;
 };
 
 /// Scattering and absorption per unit density per world unit, each ≥ 0, and the Henyey–Greenstein asymmetry,
@@ -31,6 +32,7 @@ struct Medium {
   Rgb sigmaS{8.0, 8.0, 8.0};
   Rgb sigmaA{0.0, 0.0, 0.0};
   double g = 0.6;
+  bool operator==(const Medium&) const = default;
 };
 
 /// A term of the light is on, off, or (nullopt, `auto` in files) as the look decides. In a file, a term's map
@@ -44,6 +46,7 @@ struct SilverLining {
   double inS = 0.8;     // asymmetry of the lobe towards the light, in [0, 1)
   double outS = 0.4;    // of the lobe away from it, in [0, 1)
   double blend = 0.45;  // share of the second lobe, in [0, 1]
+  bool operator==(const SilverLining&) const = default;
 };
 
 /// Ambient out-scattering: darkens in-scattering where the medium is dense, less low in the cloud. Not
@@ -51,6 +54,7 @@ struct SilverLining {
 struct Powder {
   Switch on;
   double oSa = 0.5;  // strength, in [0, 100]; the product with density is cut at 1
+  bool operator==(const Powder&) const = default;
 };
 
 /// Light from sample to light source: by marching, or by the chord to the exit of the ellipsoid inscribed in
@@ -62,6 +66,7 @@ enum class LightTransmittance { marched, chord };
 struct Octaves {
   std::optional<int> count;  // nullopt (`auto` in files): as the look decides
   double a = 0.5, b = 0.5, c = 0.5;
+  bool operator==(const Octaves&) const = default;
 };
 
 /// Thermal emission σ_a ρ · scale · B(T · temperatureScale), T from the grid of that name in the same file.
@@ -72,6 +77,7 @@ struct Emission {
   double scale = 1.0;             // ≥ 0; B has luminance 1 at 2000 K (scene/blackbody.h)
   double temperatureScale = 1.0;  // kelvin per unit of the grid, ≥ 0
   std::string grid;               // "temperature"
+  bool operator==(const Emission&) const = default;
 };
 
 /// Parallel light; irradiance on a plane that faces it. toLight is of unit length (files may give any length
@@ -79,12 +85,14 @@ struct Emission {
 struct Sun {
   glm::dvec3 toLight{0.30304576336566325, 0.80812203564176865, 0.50507627227610541};
   Rgb irradiance{3.1416, 3.1416, 3.1416};
+  bool operator==(const Sun&) const = default;
 };
 
 /// A point of intensity I per steradian: irradiance I/d² at distance d.
 struct PointLight {
   glm::dvec3 position{0.0};
   Rgb intensity{1.0, 1.0, 1.0};
+  bool operator==(const PointLight&) const = default;
 };
 
 using Light = std::variant<Sun, PointLight>;
@@ -101,6 +109,7 @@ struct SkyRamp {
   Rgb zenith{0.10, 0.24, 0.60};
   double cloudiness = 0.2;  // in [0, 1]: dims the ground's reflection and raises the horizon's white
   double intensity = 1.0;   // factor of all radiance, ≥ 0
+  bool operator==(const SkyRamp&) const = default;
 };
 
 /// A lat-long EXR: top is up; the centre column looks along −Z where Y is up, +Y where Z is up.
@@ -108,6 +117,7 @@ struct LatLong {
   std::string path;       // as opened: files give it relative to themselves
   double rotation = 0.0;  // radians about up, counter-clockwise seen from above: the centre column turns left
   double intensity = 1.0;  // factor of all radiance, ≥ 0
+  bool operator==(const LatLong&) const = default;
 };
 
 /// Radiance from all around, of one kind; the others' values are kept for the panel alone. Shown behind the
@@ -119,6 +129,7 @@ struct Environment {
   SkyRamp ramp;
   LatLong exr;
   bool show = false;
+  bool operator==(const Environment&) const = default;
 };
 
 /// Colours behind PNG and window for people to look at, in place of an environment that is not asked to show:
@@ -126,6 +137,7 @@ struct Environment {
 struct BackdropColours {
   Rgb bottom{0.42, 0.55, 0.72};
   Rgb top{0.10, 0.22, 0.48};
+  bool operator==(const BackdropColours&) const = default;
 };
 
 enum class Look { physical, report };
@@ -142,6 +154,7 @@ struct MarchSettings {
   double cacheNearVoxels = 8.0;   // marched towards a light before the volume is asked, from 0 to 16
   int cacheNearSteps = 4;         // in so many steps, from 0 to 16
   double giveUp = 1e-4;           // transmittance below which a ray ends, in (0, 0.1]
+  bool operator==(const MarchSettings&) const = default;
 };
 
 /// Keys that a scene left out are nullopt where the program chooses instead (camera: frame the active box;
@@ -163,6 +176,7 @@ struct Scene {
   // No key of files; presets set it. Directions of lights are for Z up, and resolveScene (preview/resolve.h)
   // turns them where the file's up is Y.
   bool lightsFollowUp = false;
+  bool operator==(const Scene&) const = default;
 };
 
 /// Reads a scene's map. Paths in it are relative to the file that holds them. Adds every error it finds to

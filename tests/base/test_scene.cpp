@@ -127,79 +127,6 @@ TEST(Scene, PathsAreRelativeToTheFileThatHoldsThem) {
   EXPECT_EQ(loadScene(elsewhere).environment.exr.path, "/far/sky.exr");
 }
 
-void expectEqualTerms(const Scene& a, const Scene& b) {
-  EXPECT_EQ(a.silverLining.on, b.silverLining.on);
-  EXPECT_EQ(a.silverLining.inS, b.silverLining.inS);
-  EXPECT_EQ(a.silverLining.outS, b.silverLining.outS);
-  EXPECT_EQ(a.silverLining.blend, b.silverLining.blend);
-  EXPECT_EQ(a.powder.on, b.powder.on);
-  EXPECT_EQ(a.powder.oSa, b.powder.oSa);
-  EXPECT_EQ(a.lightTransmittance, b.lightTransmittance);
-  EXPECT_EQ(a.emission.on, b.emission.on);
-  EXPECT_EQ(a.emission.scale, b.emission.scale);
-  EXPECT_EQ(a.emission.temperatureScale, b.emission.temperatureScale);
-  EXPECT_EQ(a.emission.grid, b.emission.grid);
-  EXPECT_EQ(a.environment.kind, b.environment.kind);
-  EXPECT_EQ(a.environment.constant, b.environment.constant);
-  EXPECT_EQ(a.environment.show, b.environment.show);
-  EXPECT_EQ(a.environment.ramp.ground, b.environment.ramp.ground);
-  EXPECT_EQ(a.environment.ramp.horizon, b.environment.ramp.horizon);
-  EXPECT_EQ(a.environment.ramp.zenith, b.environment.ramp.zenith);
-  EXPECT_EQ(a.environment.ramp.cloudiness, b.environment.ramp.cloudiness);
-  EXPECT_EQ(a.environment.ramp.intensity, b.environment.ramp.intensity);
-  EXPECT_EQ(a.environment.exr.path, b.environment.exr.path);
-  EXPECT_EQ(a.environment.exr.rotation, b.environment.exr.rotation);
-  EXPECT_EQ(a.environment.exr.intensity, b.environment.exr.intensity);
-}
-
-void expectEqual(const Scene& a, const Scene& b) {
-  expectEqualTerms(a, b);
-  ASSERT_EQ(a.camera.has_value(), b.camera.has_value());
-  if (a.camera) {
-    EXPECT_EQ(a.camera->position, b.camera->position);
-    EXPECT_EQ(a.camera->target, b.camera->target);
-    EXPECT_EQ(a.camera->up, b.camera->up);
-    EXPECT_EQ(a.camera->fov, b.camera->fov);
-  }
-  EXPECT_EQ(a.cameraUpGiven, b.cameraUpGiven);
-  ASSERT_EQ(a.medium.has_value(), b.medium.has_value());
-  if (a.medium) {
-    EXPECT_EQ(a.medium->sigmaS, b.medium->sigmaS);
-    EXPECT_EQ(a.medium->sigmaA, b.medium->sigmaA);
-    EXPECT_EQ(a.medium->g, b.medium->g);
-  }
-  EXPECT_EQ(a.octaves.count, b.octaves.count);
-  EXPECT_EQ(a.octaves.a, b.octaves.a);
-  EXPECT_EQ(a.octaves.b, b.octaves.b);
-  EXPECT_EQ(a.octaves.c, b.octaves.c);
-  ASSERT_EQ(a.lights.size(), b.lights.size());
-  for (size_t i = 0; i < a.lights.size(); ++i) {
-    ASSERT_EQ(a.lights[i].index(), b.lights[i].index());
-    if (const Sun* sun = std::get_if<Sun>(&a.lights[i])) {
-      EXPECT_EQ(sun->toLight, std::get<Sun>(b.lights[i]).toLight);
-      EXPECT_EQ(sun->irradiance, std::get<Sun>(b.lights[i]).irradiance);
-    } else {
-      EXPECT_EQ(std::get<PointLight>(a.lights[i]).position, std::get<PointLight>(b.lights[i]).position);
-      EXPECT_EQ(std::get<PointLight>(a.lights[i]).intensity, std::get<PointLight>(b.lights[i]).intensity);
-    }
-  }
-  ASSERT_EQ(a.backdrop.has_value(), b.backdrop.has_value());
-  if (a.backdrop) {
-    EXPECT_EQ(a.backdrop->bottom, b.backdrop->bottom);
-    EXPECT_EQ(a.backdrop->top, b.backdrop->top);
-  }
-  EXPECT_EQ(a.look, b.look);
-  EXPECT_EQ(a.march.stepVoxels, b.march.stepVoxels);
-  EXPECT_EQ(a.march.shadowStepVoxels, b.march.shadowStepVoxels);
-  EXPECT_EQ(a.march.shadowGrowth, b.march.shadowGrowth);
-  EXPECT_EQ(a.march.adaptive, b.march.adaptive);
-  EXPECT_EQ(a.march.lightCache, b.march.lightCache);
-  EXPECT_EQ(a.march.cacheVoxels, b.march.cacheVoxels);
-  EXPECT_EQ(a.march.skyCacheVoxels, b.march.skyCacheVoxels);
-  EXPECT_EQ(a.march.cacheNearVoxels, b.march.cacheNearVoxels);
-  EXPECT_EQ(a.march.cacheNearSteps, b.march.cacheNearSteps);
-}
-
 TEST(Scene, WrittenAndReadIsTheSame) {
   for (const char* text :
        {"", "lights: []\n", "look: report\ncamera: { fov: 1e-3 }\n",
@@ -214,9 +141,11 @@ TEST(Scene, WrittenAndReadIsTheSame) {
         "lights:\n  - sun: { to_light: [1, 2, 3], irradiance: [0.1, 0.2, 0.3] }\n"
         "  - sun: { to_light: [1e-200, 0, 3e-200] }\n  - point: { position: [1, 2, 3], intensity: 0.1 }\n"
         "environment: { constant: 0.7, show: true }\nbackground: { top: 0.1 }\nmarch: { step: 0.3, adaptive: "
-        "false, light_cache: false, cache: 3.5, sky_cache: 8, cache_near: 2, cache_near_steps: 1 }\n"}) {
+        "false, light_cache: false, cache: 3.5, sky_cache: 8, cache_near: 2, cache_near_steps: 1, give_up: "
+        "0.01 }\n"}) {
     const Scene scene = sceneOf(text);
-    expectEqual(scene, sceneOf(writeScene(scene)));
+    const std::string written = writeScene(scene);
+    EXPECT_TRUE(sceneOf(written) == scene) << text << "\nwas written as\n" << written;
   }
 }
 
