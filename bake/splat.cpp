@@ -4,6 +4,7 @@
 #include "bake/splat.h"
 
 #include <openvdb/tools/Prune.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -55,6 +56,14 @@ struct OpenLeaf {
   std::unique_ptr<Leaf> density, temperature, age;
   std::unique_ptr<VelocityLeaf> velocity;
   std::unique_ptr<ExtraSums> extras;
+};
+
+/// Room for one tile's voxels, which a thread keeps for its next tile. All 0 between tiles, but for what lies
+/// outside of the tile.
+struct TileRoom {
+  std::vector<float> values =
+      std::vector<float>(size_t(SplatTile::kEdge) * SplatTile::kEdge * SplatTile::kPitch, 0.0f);
+  std::vector<uint8_t> touched = std::vector<uint8_t>(kLeavesOfTile, 0);
 };
 
 struct TileResult {
@@ -111,7 +120,7 @@ class Splatter {
         }
         const SplatRecord record = places_.placeOf(n);
         scales_[n] = float(density);
-        if (record.radius <= 1.0f) continue;
+        if (record.radius <= 1.0f || isSmall(record)) continue;
         owner[count] = n;
         records[count++] = record;
       }
@@ -119,6 +128,11 @@ class Splatter {
       for (size_t k = 0; k < count; ++k)
         scales_[owner[k]] = float(double(particles_.mass[owner[k]]) / volume / sums[k]);
     });
+  }
+
+  /// Whether a tile takes the particle whole, and scales its kernel itself.
+  bool isSmall(const SplatRecord& record) const {
+    return !extras_ && !shaped_ && record.radius > 1.0f && record.radius <= SplatTile::kWidest;
   }
 
   /// The field on the voxels from `origin` in the particle's own frame, or null where nothing erodes.
@@ -176,6 +190,7 @@ class Splatter {
   struct Batch {
     std::span<const uint32_t> particles;
     std::vector<SplatRecord> records;  // cells in the tile's frame
+    std::vector<SplatRecord> small;    // those that the tile takes whole, by place along x
     std::vector<SplatExtras> extras;
     std::vector<uint32_t> starts, list;
   };
@@ -186,9 +201,12 @@ class Splatter {
     std::vector<OpenLeaf> leaves(kLeavesOfTile);
     const std::span<const uint32_t> all = places_.particlesOf(tile);
     Batch batch;
-    for (size_t begin = 0; begin < all.size(); begin += kBatch) {
-      batch.particles = all.subspan(begin, std::min(kBatch, all.size() - begin));
+    const size_t batches = (all.size() + kBatch - 1) / kBatch;
+    for (size_t b = 0; b < batches; ++b) {
+      const size_t begin = all.size() * b / batches, end = all.size() * (b + 1) / batches;
+      batch.particles = all.subspan(begin, end - begin);
       sortByLeaf(origin, batch);
+      addSmall(batch, origin, leaves);
       forEachLeaf(batch.list.size(), [&](int leaf) { addToLeaf(batch, origin, leaf, leaves[size_t(leaf)]); });
     }
     TileResult result;
@@ -229,6 +247,7 @@ class Splatter {
   void sortByLeaf(const Coord& tile, Batch& batch) const {
     const size_t count = batch.particles.size();
     batch.records.resize(count);
+    batch.small.clear();
     if (extras_) batch.extras.resize(count);
     struct Reach {
       uint8_t low[3], high[3], way;
@@ -251,6 +270,13 @@ class Splatter {
       SplatWay way;
       batch.records[k] = recordOf(n, tile, way, reaches[k].low, reaches[k].high);
       reaches[k].way = uint8_t(way);
+      if (isSmall(batch.records[k])) {
+        if (reaches[k].low[0] <= reaches[k].high[0] && reaches[k].low[1] <= reaches[k].high[1] &&
+            reaches[k].low[2] <= reaches[k].high[2])
+          batch.small.push_back(batch.records[k]);
+        reaches[k].low[0] = 1, reaches[k].high[0] = 0;  // on no leaf's list
+        continue;
+      }
       if (extras_) batch.extras[k] = extrasOf(n);
       forEachLeafOf(reaches[k], [&](size_t list) { ++batch.starts[list + 1]; });
     }
@@ -295,6 +321,40 @@ class Splatter {
     return record;
   }
 
+  /// Adds the batch's small particles through one array, plane after plane along x, so that what they touch
+  /// stays near.
+  void addSmall(Batch& batch, const Coord& tile, std::vector<OpenLeaf>& leaves) const {
+    if (batch.small.empty()) return;
+    std::stable_sort(batch.small.begin(), batch.small.end(),
+                     [](const SplatRecord& a, const SplatRecord& b) { return a.cell[0] < b.cell[0]; });
+    TileRoom& room = rooms_.local();
+    splatIntoTile(settings_.kernel, batch.small.data(), batch.small.size(),
+                  {room.values.data(), room.touched.data()});
+    for (int leaf = 0; leaf < kLeavesOfTile; ++leaf) {
+      if (room.touched[size_t(leaf)] == 0) continue;
+      room.touched[size_t(leaf)] = 0;
+      OpenLeaf& open = leaves[size_t(leaf)];
+      const Coord at = originOf(Coord(0), leaf);
+      if (!open.density) openLeaf(tile + at, open);
+      float* to = open.density->buffer().data();
+      for (int x = 0; x < kLeafEdge; ++x)
+        for (int y = 0; y < kLeafEdge; ++y, to += kLeafEdge) {
+          float* const from = room.values.data() +
+                              ((at.x() + x) * SplatTile::kEdge + at.y() + y) * SplatTile::kPitch +
+                              SplatTile::kBefore + at.z();
+          for (int z = 0; z < kLeafEdge; ++z) to[z] += from[z];
+          std::memset(from, 0, kLeafEdge * sizeof(float));
+        }
+    }
+  }
+
+  void openLeaf(const Coord& origin, OpenLeaf& open) const {
+    open.density = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, 0.0f);
+    open.density->allocate();
+    std::memset(open.density->buffer().data(), 0, kLeafVoxels * sizeof(float));
+    if (extras_) open.extras = std::make_unique<ExtraSums>();  // all 0
+  }
+
   SplatExtras extrasOf(size_t n) const {
     SplatExtras e{};
     if (settings_.vel) {
@@ -317,10 +377,7 @@ class Splatter {
     if (batch.starts[first] == batch.starts[first + kWays]) return;
     const Coord inTile = originOf(Coord(0), leaf);
     if (!open.density) {
-      open.density = std::make_unique<Leaf>(openvdb::PartialCreate(), tile + inTile, 0.0f);
-      open.density->allocate();
-      std::memset(open.density->buffer().data(), 0, kLeafVoxels * sizeof(float));
-      if (extras_) open.extras = std::make_unique<ExtraSums>();  // all 0
+      openLeaf(tile + inTile, open);
       addBatch(batch, tile, inTile, leaf,
                {open.density->buffer().data(), extras_ ? open.extras->values : nullptr});
       return;
@@ -513,6 +570,7 @@ class Splatter {
   const SplatPlaces places_;
   const bool extras_, shaped_;
   openvdb::CoordBBox box_;
+  mutable tbb::enumerable_thread_specific<TileRoom> rooms_;
   std::vector<float> scales_;  // below 0: a point, since noise left nothing else
 };
 

@@ -315,6 +315,141 @@ double shapedWith(const SplatRecord& p, const SplatShape& shape, const int32_t o
   return sum;
 }
 
+/// The part of a particle's rows that lies in a tile.
+struct TileClip {
+  Span x, y;    // relative to the cell, inside the tile
+  int zOffset;  // of the first voxel of a row, from the row's begin with its room
+
+  HWY_INLINE TileClip(const SplatRecord& p, const Span& wholeX, const Span& wholeY, int zLow) {
+    x = clipped(wholeX, p.cell[0]);
+    y = clipped(wholeY, p.cell[1]);
+    zOffset = SplatTile::kBefore + p.cell[2] + zLow;
+  }
+  static HWY_INLINE Span clipped(const Span& span, int cell) {
+    const int low = -cell, high = SplatTile::kEdge - 1 - cell;
+    return {span.low > low ? span.low : low, span.high < high ? span.high : high};
+  }
+};
+
+HWY_INLINE void touch(const SplatRecord& p, const TileClip& clip, const Span& z, const SplatTile& tile) {
+  const Span inside = TileClip::clipped(z, p.cell[2]);
+  constexpr int kShift = 3;  // 8 voxels
+  for (int x = (p.cell[0] + clip.x.low) >> kShift; x <= (p.cell[0] + clip.x.high) >> kShift; ++x)
+    for (int y = (p.cell[1] + clip.y.low) >> kShift; y <= (p.cell[1] + clip.y.high) >> kShift; ++y)
+      for (int at = (p.cell[2] + inside.low) >> kShift; at <= (p.cell[2] + inside.high) >> kShift; ++at)
+        tile.touched[(x * SplatTile::kLeaves + y) * SplatTile::kLeaves + at] = 1;
+}
+
+HWY_INLINE float* tileRow(const SplatRecord& p, const TileClip& clip, int x, int y, const SplatTile& tile) {
+  return tile.values + ((p.cell[0] + x) * SplatTile::kEdge + p.cell[1] + y) * SplatTile::kPitch +
+         clip.zOffset;
+}
+
+HWY_INLINE void addScaled(const Row& row, V scale, float* to) {
+  for (size_t k = 0; k < kParts; ++k) {
+    float* const at = to + k * kLanes;
+    hn::StoreU(hn::Add(hn::LoadU(D(), at), hn::Mul(row.part[k], scale)), D(), at);
+  }
+}
+
+constexpr int kWidestSpan = 9;
+
+/// Evaluates a radial kernel once, on kRows rows of 8 along z, and adds it scaled by its own sum.
+template <class Kernel, int kRows>
+HWY_INLINE void radialIntoTile(const SplatRecord& p, const SplatTile& tile) {
+  const D d;
+  const float perSquare = 1.0f / (p.radius * p.radius);
+  const Span x = spanOf(p.rest[0], p.radius), y = spanOf(p.rest[1], p.radius),
+             z = spanOf(p.rest[2], p.radius);
+  Row dz[kRows];
+  for (int r = 0; r < kRows; ++r) {
+    dz[r] = apartFrom(z.low + r * kLeafEdge, p.rest[2]);
+    for (size_t k = 0; k < kParts; ++k)
+      dz[r].part[k] = hn::Mul(hn::Mul(dz[r].part[k], dz[r].part[k]), hn::Set(d, perSquare));
+  }
+  float aside[kWidestSpan * kWidestSpan];
+  Row rows[kWidestSpan * kWidestSpan * kRows];
+  int count = 0;
+  Row total = allEqual(0.0f);
+  for (int xAt = x.low; xAt <= x.high; ++xAt) {
+    const float dx = float(xAt) - p.rest[0], dx2 = dx * dx * perSquare;
+    for (int yAt = y.low; yAt <= y.high; ++yAt, ++count) {
+      const float dy = float(yAt) - p.rest[1];
+      aside[count] = dx2 + dy * dy * perSquare;
+      if (aside[count] >= 1.0f) continue;
+      const auto both = hn::Set(d, aside[count]);
+      for (int r = 0; r < kRows; ++r)
+        for (size_t k = 0; k < kParts; ++k) {
+          const auto value = Kernel::at(hn::Add(dz[r].part[k], both));
+          rows[count * kRows + r].part[k] = value;
+          total.part[k] = hn::Add(total.part[k], value);
+        }
+    }
+  }
+  const auto scale = hn::Set(d, float(double(p.scale) / sumOf(total)));
+  const TileClip clip(p, x, y, z.low);
+  touch(p, clip, z, tile);
+  for (int xAt = clip.x.low; xAt <= clip.x.high; ++xAt)
+    for (int yAt = clip.y.low; yAt <= clip.y.high; ++yAt) {
+      const int n = (xAt - x.low) * (y.high - y.low + 1) + yAt - y.low;
+      if (aside[n] >= 1.0f) continue;
+      float* const to = tileRow(p, clip, xAt, yAt, tile);
+      for (int r = 0; r < kRows; ++r) addScaled(rows[n * kRows + r], scale, to + r * kLeafEdge);
+    }
+}
+
+template <int kRows>
+HWY_INLINE void gaussianIntoTile(const SplatRecord& p, const SplatTile& tile) {
+  const float perSquare = 1.0f / (p.radius * p.radius);
+  const Span span[] = {spanOf(p.rest[0], p.radius), spanOf(p.rest[1], p.radius), spanOf(p.rest[2], p.radius)};
+  alignas(64) float factors[2][kRows * kLeafEdge];
+  Row ez[kRows];
+  double product = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    double sum = 0.0;
+    for (int r = 0; r < kRows; ++r) {
+      const Row row = gaussianFactors(span[axis].low + r * kLeafEdge, p.rest[axis], perSquare);
+      sum += sumOf(row);
+      if (axis < 2)
+        stored(row, factors[axis] + r * kLeafEdge);
+      else
+        ez[r] = row;
+    }
+    product *= sum;
+  }
+  const float scale = float(double(p.scale) / product);
+  const TileClip clip(p, span[0], span[1], span[2].low);
+  touch(p, clip, span[2], tile);
+  for (int x = clip.x.low; x <= clip.x.high; ++x) {
+    const float along = factors[0][x - span[0].low] * scale;
+    for (int y = clip.y.low; y <= clip.y.high; ++y) {
+      const auto aside = hn::Set(D(), along * factors[1][y - span[1].low]);
+      float* const to = tileRow(p, clip, x, y, tile);
+      for (int r = 0; r < kRows; ++r) addScaled(ez[r], aside, to + r * kLeafEdge);
+    }
+  }
+}
+
+template <int kRows>
+HWY_INLINE void oneIntoTile(SplatKernel kernel, const SplatRecord& p, const SplatTile& tile) {
+  if (kernel == SplatKernel::gaussian)
+    gaussianIntoTile<kRows>(p, tile);
+  else if (kernel == SplatKernel::wendland)
+    radialIntoTile<Wendland, kRows>(p, tile);
+  else
+    radialIntoTile<SmoothSphere, kRows>(p, tile);
+}
+
+void intoTile(SplatKernel kernel, const SplatRecord* records, size_t count, const SplatTile& tile) {
+  // Up to this radius a particle reaches over 8 voxels at most.
+  constexpr float kOneRow = 3.5f;
+  for (size_t n = 0; n < count; ++n)
+    if (records[n].radius <= kOneRow)
+      oneIntoTile<1>(kernel, records[n], tile);
+    else
+      oneIntoTile<2>(kernel, records[n], tile);
+}
+
 SplatLosses losses(const float* before, const float* stored, float cutoff) {
   const D d;
   Row all = allEqual(0.0f), cut = all, rounded = all;
@@ -347,6 +482,7 @@ HWY_EXPORT(sums);
 HWY_EXPORT(intoLeaf);
 HWY_EXPORT(shaped);
 HWY_EXPORT(losses);
+HWY_EXPORT(intoTile);
 
 void splatSums(SplatKernel kernel, const SplatRecord* records, size_t count, double* sums) {
   HWY_DYNAMIC_DISPATCH(sums)(kernel, records, count, sums);
@@ -360,6 +496,10 @@ void splatIntoLeaf(SplatKernel kernel, const SplatRecord* records, const SplatEx
 double splatShaped(SplatKernel kernel, const SplatRecord& record, const SplatShape& shape,
                    const int32_t origin[3], const float* field, float* weights) {
   return HWY_DYNAMIC_DISPATCH(shaped)(kernel, record, shape, origin, field, weights);
+}
+
+void splatIntoTile(SplatKernel kernel, const SplatRecord* records, size_t count, const SplatTile& tile) {
+  HWY_DYNAMIC_DISPATCH(intoTile)(kernel, records, count, tile);
 }
 
 SplatLosses splatLosses(const float* before, const float* stored, float cutoff) {

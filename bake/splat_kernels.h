@@ -56,6 +56,22 @@ struct SplatExtras {
 void splatIntoLeaf(SplatKernel kernel, const SplatRecord* records, const SplatExtras* extras,
                    const uint32_t* list, size_t count, const int32_t origin[3], const SplatLeaf& leaf);
 
+/// A tile's voxels as one array, for particles that are small beside it: rows along z with room on both sides
+/// for what lies outside the tile, which is not read.
+struct SplatTile {
+  static constexpr int kEdge = 64;        // voxels
+  static constexpr int kLeaves = 8;       // along an axis
+  static constexpr float kWidest = 4.0f;  // radius of particles that it takes: they reach over 9 voxels
+  static constexpr int kBefore = 8;       // voxels of room before a row
+  static constexpr int kPitch = kBefore + kEdge + 16;
+  float* values;     // [kEdge][kEdge][kPitch]
+  uint8_t* touched;  // [kLeaves³]: 1 where a leaf was given anything
+};
+
+/// Adds particles of radius 1 < r ≤ kWidest, in order. Their cells are relative to the tile; their `scale` is
+/// mass over the volume of a voxel: kernels are summed and scaled here.
+void splatIntoTile(SplatKernel kernel, const SplatRecord* records, size_t count, const SplatTile& tile);
+
 /// The kernel of one stretched or eroded particle on the 8³ voxels from `origin`, not scaled: weights[512],
 /// and their sum. `field` (512 values of the field there) may be null.
 double splatShaped(SplatKernel kernel, const SplatRecord& record, const SplatShape& shape,
