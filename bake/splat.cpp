@@ -9,6 +9,8 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -70,6 +72,9 @@ struct TileResult {
   std::vector<std::pair<int, OpenLeaf>> leaves;  // by growing number
   SplatLedger ledger;
   float maximum = 0.0f;
+  uint64_t active = 0;
+  openvdb::CoordBBox box;  // of active voxels
+  bool constant = false;   // whether a leaf holds one value alone, so that there is something to prune
 };
 
 class Splatter {
@@ -186,11 +191,27 @@ class Splatter {
     return sum;
   }
 
+  /// The leaves of a tile that a particle reaches, and the way it takes there.
+  struct Reach {
+    uint8_t low[3], high[3], way;
+
+    bool empty() const { return low[0] > high[0] || low[1] > high[1] || low[2] > high[2]; }
+    /// Calls body with the number of the list that each leaf has for this way.
+    template <class Body>
+    void forEachList(const Body& body) const {
+      for (int x = low[0]; x <= high[0]; ++x)
+        for (int y = low[1]; y <= high[1]; ++y)
+          for (int z = low[2]; z <= high[2]; ++z)
+            body(size_t(((x * kTileLeaves + y) * kTileLeaves + z) * kWays + way));
+    }
+  };
+
   /// Particles of one batch of a tile, and for each leaf and way those that reach it.
   struct Batch {
     std::span<const uint32_t> particles;
-    std::vector<SplatRecord> records;  // cells in the tile's frame
-    std::vector<SplatRecord> small;    // those that the tile takes whole, by place along x
+    std::vector<SplatRecord> records;             // those that leaves take, cells in the tile's frame
+    std::vector<uint32_t> owners;                 // the particle of each record
+    std::vector<SplatRecord> small, smallSorted;  // those that the tile takes whole, by place along x
     std::vector<SplatExtras> extras;
     std::vector<uint32_t> starts, list;
   };
@@ -216,12 +237,19 @@ class Splatter {
       const size_t n = size_t(leaf);
       if (leaves[n].density) closeLeaf(originOf(origin, leaf), leaves[n], ledgers[n], maxima[n]);
     });
+    float constantValue = 0.0f;
+    bool constantState = false;
     for (size_t n = 0; n < leaves.size(); ++n) {
       result.ledger.splatted += ledgers[n].splatted;
       result.ledger.lostToCutoff += ledgers[n].lostToCutoff;
       result.ledger.stored += ledgers[n].stored;
       result.maximum = std::max(result.maximum, maxima[n]);
-      if (leaves[n].density) result.leaves.emplace_back(int(n), std::move(leaves[n]));
+      if (!leaves[n].density) continue;
+      const Leaf& leaf = *leaves[n].density;
+      result.active += leaf.onVoxelCount();
+      leaf.evalActiveBoundingBox(result.box);  // looks at voxels only where the leaf lies outside the box
+      result.constant = result.constant || leaf.isConstant(constantValue, constantState);
+      result.leaves.emplace_back(int(n), std::move(leaves[n]));
     }
     return result;
   }
@@ -245,51 +273,43 @@ class Splatter {
   }
 
   void sortByLeaf(const Coord& tile, Batch& batch) const {
-    const size_t count = batch.particles.size();
-    batch.records.resize(count);
+    batch.records.clear();
+    batch.owners.clear();
     batch.small.clear();
-    if (extras_) batch.extras.resize(count);
-    struct Reach {
-      uint8_t low[3], high[3], way;
-    };
-    std::vector<Reach> reaches(count);
+    batch.extras.clear();
+    std::vector<Reach> reaches;
     batch.starts.assign(size_t(kLeavesOfTile * kWays) + 1, 0);
-    const auto forEachLeafOf = [](const Reach& r, const auto& body) {
-      for (int x = r.low[0]; x <= r.high[0]; ++x)
-        for (int y = r.low[1]; y <= r.high[1]; ++y)
-          for (int z = r.low[2]; z <= r.high[2]; ++z)
-            body(size_t(((x * kTileLeaves + y) * kTileLeaves + z) * kWays + r.way));
-    };
     // Particles of a tile lie far apart in memory: asked for this many ahead, they are there when they are
     // needed.
     constexpr size_t kAhead = 16;
+    const size_t count = batch.particles.size();
     for (size_t k = 0; k < count; ++k) {
       const size_t n = batch.particles[k], soon = batch.particles[std::min(k + kAhead, count - 1)];
       places_.prefetch(soon);
       __builtin_prefetch(scales_.data() + soon);
-      SplatWay way;
-      batch.records[k] = recordOf(n, tile, way, reaches[k].low, reaches[k].high);
-      reaches[k].way = uint8_t(way);
-      if (isSmall(batch.records[k])) {
-        if (reaches[k].low[0] <= reaches[k].high[0] && reaches[k].low[1] <= reaches[k].high[1] &&
-            reaches[k].low[2] <= reaches[k].high[2])
-          batch.small.push_back(batch.records[k]);
-        reaches[k].low[0] = 1, reaches[k].high[0] = 0;  // on no leaf's list
+      Reach reach;
+      const SplatRecord record = recordOf(n, tile, reach);
+      if (isSmall(record)) {
+        if (!reach.empty()) batch.small.push_back(record);
         continue;
       }
-      if (extras_) batch.extras[k] = extrasOf(n);
-      forEachLeafOf(reaches[k], [&](size_t list) { ++batch.starts[list + 1]; });
+      batch.records.push_back(record);
+      batch.owners.push_back(uint32_t(n));
+      reaches.push_back(reach);
+      if (extras_) batch.extras.push_back(extrasOf(n));
+      reach.forEachList([&](size_t list) { ++batch.starts[list + 1]; });
     }
     for (size_t n = 1; n < batch.starts.size(); ++n) batch.starts[n] += batch.starts[n - 1];
     batch.list.resize(batch.starts.back());
     std::vector<uint32_t> next(batch.starts.begin(), batch.starts.end() - 1);
-    for (size_t k = 0; k < count; ++k)
-      forEachLeafOf(reaches[k], [&](size_t list) { batch.list[next[list]++] = uint32_t(k); });
+    for (size_t k = 0; k < reaches.size(); ++k)
+      reaches[k].forEachList([&](size_t list) { batch.list[next[list]++] = uint32_t(k); });
   }
 
   /// The particle in a tile's frame, and the leaves of the tile that it reaches.
-  SplatRecord recordOf(size_t n, const Coord& tile, SplatWay& way, uint8_t low[3], uint8_t high[3]) const {
+  SplatRecord recordOf(size_t n, const Coord& tile, Reach& reach) const {
     SplatRecord record;
+    SplatWay way = SplatWay::round;
     int from[3], to[3];
     if (shaped_) {
       const SplatFrame f = places_.frameOf(n);
@@ -313,10 +333,11 @@ class Splatter {
       const int first = std::max(0, from[axis] - tile[axis]),
                 last = std::min(kTileEdge - 1, to[axis] - tile[axis]);
       // A tile that rounding alone put on the list has an empty range.
-      low[axis] = uint8_t(first / kLeafEdge);
-      high[axis] = first <= last ? uint8_t(last / kLeafEdge) : 0;
-      if (first > last) low[axis] = 1;
+      reach.low[axis] = uint8_t(first / kLeafEdge);
+      reach.high[axis] = first <= last ? uint8_t(last / kLeafEdge) : 0;
+      if (first > last) reach.low[axis] = 1;
     }
+    reach.way = uint8_t(way);
     record.scale = std::abs(scales_[n]);
     return record;
   }
@@ -325,27 +346,41 @@ class Splatter {
   /// stays near.
   void addSmall(Batch& batch, const Coord& tile, std::vector<OpenLeaf>& leaves) const {
     if (batch.small.empty()) return;
-    std::stable_sort(batch.small.begin(), batch.small.end(),
-                     [](const SplatRecord& a, const SplatRecord& b) { return a.cell[0] < b.cell[0]; });
+    sortAlongX(batch);
     TileRoom& room = rooms_.local();
-    splatIntoTile(settings_.kernel, batch.small.data(), batch.small.size(),
+    splatIntoTile(settings_.kernel, batch.smallSorted.data(), batch.smallSorted.size(),
                   {room.values.data(), room.touched.data()});
     for (int leaf = 0; leaf < kLeavesOfTile; ++leaf) {
       if (room.touched[size_t(leaf)] == 0) continue;
       room.touched[size_t(leaf)] = 0;
       OpenLeaf& open = leaves[size_t(leaf)];
       const Coord at = originOf(Coord(0), leaf);
-      if (!open.density) openLeaf(tile + at, open);
+      const bool fresh = !open.density;
+      if (fresh) openLeaf(tile + at, open);
       float* to = open.density->buffer().data();
       for (int x = 0; x < kLeafEdge; ++x)
         for (int y = 0; y < kLeafEdge; ++y, to += kLeafEdge) {
           float* const from = room.values.data() +
                               ((at.x() + x) * SplatTile::kEdge + at.y() + y) * SplatTile::kPitch +
                               SplatTile::kBefore + at.z();
-          for (int z = 0; z < kLeafEdge; ++z) to[z] += from[z];
+          if (fresh)
+            std::memcpy(to, from, kLeafEdge * sizeof(float));
+          else
+            for (int z = 0; z < kLeafEdge; ++z) to[z] += from[z];
           std::memset(from, 0, kLeafEdge * sizeof(float));
         }
     }
+  }
+
+  /// A stable counting sort by cell: equal cells keep their order.
+  static void sortAlongX(Batch& batch) {
+    // Cells of small particles lie up to their reach outside the tile.
+    constexpr int kOutside = 8;
+    std::array<uint32_t, kTileEdge + 2 * kOutside + 1> next{};
+    for (const SplatRecord& p : batch.small) ++next[size_t(p.cell[0] + kOutside) + 1];
+    for (size_t n = 1; n < next.size(); ++n) next[n] += next[n - 1];
+    batch.smallSorted.resize(batch.small.size());
+    for (const SplatRecord& p : batch.small) batch.smallSorted[next[size_t(p.cell[0] + kOutside)]++] = p;
   }
 
   void openLeaf(const Coord& origin, OpenLeaf& open) const {
@@ -426,7 +461,7 @@ class Splatter {
 
   void addShaped(const Batch& batch, uint32_t k, const Coord& tile, const Coord& inTile,
                  const SplatLeaf& sums) const {
-    const size_t n = batch.particles[k];
+    const size_t n = batch.owners[k];
     const SplatFrame f = places_.frameOf(n);
     const Coord origin = tile + inTile;
     if (!mayReach(f, origin)) return;
@@ -526,7 +561,13 @@ class Splatter {
     openvdb::tree::ValueAccessor<openvdb::FloatTree> into(density->tree());
     Splatted result;
     for (const float mass : particles_.mass) result.ledger.given += double(mass);
+    uint64_t count = 0;
+    openvdb::CoordBBox active;
+    bool constant = false;
     for (size_t t = 0; t < tiles.size(); ++t) {
+      count += tiles[t].active;
+      constant = constant || tiles[t].constant;
+      if (!tiles[t].box.empty()) active.expand(tiles[t].box);
       result.ledger.splatted += tiles[t].ledger.splatted * volume;
       result.ledger.lostToCutoff += tiles[t].ledger.lostToCutoff * volume;
       result.ledger.stored += tiles[t].ledger.stored * volume;
@@ -540,28 +581,46 @@ class Splatter {
     }
     if (settings_.box) result.ledger.outsideBox = result.ledger.given - result.ledger.splatted;
     result.ledger.lostToHalf = result.ledger.splatted - result.ledger.lostToCutoff - result.ledger.stored;
+    if (constant) openvdb::tools::prune(density->tree());
     close(*density, *grids, result);
-    result.voxelsActive = density->activeVoxelCount();
-    if (result.voxelsActive > 0) {
-      const Coord size = density->evalActiveVoxelDim();
+    if (settings_.box)
+      for (const Coord& corner : {box_.min(), box_.max()}) active.expand(corner);
+    result.voxelsActive = count;
+    if (!active.empty()) {
+      const Coord size = active.dim();
       result.longestAxis = std::max({size.x(), size.y(), size.z()});
     }
-    if (velocity) close(*velocity, *grids, result);
-    if (temperature) close(*temperature, *grids, result);
-    if (age) close(*age, *grids, result);
+    const auto closeBeside = [&](const auto& grid) {
+      if (!grid) return;
+      openvdb::tools::prune(grid->tree());
+      close(*grid, *grids, result);
+    };
+    closeBeside(velocity);
+    closeBeside(temperature);
+    closeBeside(age);
     result.grids = std::move(grids);
     return result;
   }
 
+  /// What a tree's nodes take, all leaves being in memory, without looking at each of them.
+  template <class Tree>
+  static uint64_t bytesOf(const Tree& tree) {
+    using Upper = typename Tree::RootNodeType::ChildNodeType;
+    using Lower = typename Upper::ChildNodeType;
+    using LeafNode = typename Tree::LeafNodeType;
+    constexpr uint64_t kLeafBytes = sizeof(LeafNode) + kLeafVoxels * sizeof(typename Tree::ValueType);
+    const std::vector<openvdb::Index32> counts = tree.nodeCount();  // leaves first
+    return sizeof(Tree) + counts[0] * kLeafBytes + counts[1] * sizeof(Lower) + counts[2] * sizeof(Upper);
+  }
+
   template <class Grid>
   void close(Grid& grid, SplatGrids& grids, Splatted& result) const {
-    openvdb::tools::prune(grid.tree());
     // Active corners give every frame the same box.
     if (settings_.box)
       for (const Coord& corner : {box_.min(), box_.max()}) grid.tree().setActiveState(corner, true);
     // Blender 3.4 draws nothing for a grid that holds active tiles alone.
     if (grid.tree().leafCount() == 0) grid.tree().voxelizeActiveTiles();
-    result.gridBytes += grid.memUsage();
+    result.gridBytes += bytesOf(grid.tree());
     grids.all.push_back(grid.copyGrid());  // shares the tree
   }
 

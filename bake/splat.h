@@ -49,7 +49,7 @@ struct SplatGrids;  // of OpenVDB
 struct Splatted {
   std::shared_ptr<const SplatGrids> grids;
   SplatLedger ledger;
-  uint64_t voxelsActive = 0;  // of density
+  uint64_t voxelsActive = 0;  // of density, but for corners of a box
   uint64_t gridBytes = 0;     // of all grids, in memory
   int longestAxis = 0;        // voxels along the longest side of the active box
   double maximum = 0.0;

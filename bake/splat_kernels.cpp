@@ -1,6 +1,7 @@
 // Splat kernels in rows of 8 voxels. Depends on splat_kernels.h, Highway.
 #include "bake/splat_kernels.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -398,6 +399,73 @@ HWY_INLINE void radialIntoTile(const SplatRecord& p, const SplatTile& tile) {
     }
 }
 
+// Four voxels along z, of which two rows fill a Row.
+constexpr int kShortEdge = 4;
+using DShort = hn::CappedTag<float, kShortEdge>;
+constexpr size_t kShortLanes = hn::MaxLanes(DShort());
+
+HWY_INLINE void addShort(const float* values, float scale, float* to) {
+  const DShort d;
+  for (size_t k = 0; k < kShortEdge; k += kShortLanes) {
+    const auto given = hn::Mul(hn::LoadU(d, values + k), hn::Set(d, scale));
+    hn::StoreU(hn::Add(hn::LoadU(d, to + k), given), d, to + k);
+  }
+}
+
+/// The same for a particle of at most four voxels along each axis: two rows at a time.
+template <class Kernel>
+HWY_INLINE void shortIntoTile(const SplatRecord& p, const SplatTile& tile) {
+  const D d;
+  const float perSquare = 1.0f / (p.radius * p.radius);
+  const Span x = spanOf(p.rest[0], p.radius), y = spanOf(p.rest[1], p.radius),
+             z = spanOf(p.rest[2], p.radius);
+  // Squared distances in radii; voxels that are not reached lie at 1, where every kernel is 0.
+  alignas(64) float dy2[kShortEdge], dz2[kLeafEdge];
+  for (int n = 0; n < kShortEdge; ++n) {
+    const float dy = float(y.low + n) - p.rest[1], dz = float(z.low + n) - p.rest[2];
+    dy2[n] = y.low + n <= y.high ? dy * dy * perSquare : 1.0f;
+    dz2[n] = dz2[n + kShortEdge] = z.low + n <= z.high ? dz * dz * perSquare : 1.0f;
+  }
+  const Row dz = loaded(dz2);
+  Row pairs[2];  // of neighbours along y
+  for (int n = 0; n < 2; ++n) {
+    alignas(64) float both[kLeafEdge];
+    for (int k = 0; k < kLeafEdge; ++k) both[k] = dy2[2 * n + k / kShortEdge];
+    pairs[n] = loaded(both);
+    for (size_t k = 0; k < kParts; ++k) pairs[n].part[k] = hn::Add(pairs[n].part[k], dz.part[k]);
+  }
+  alignas(64) float values[kShortEdge][kShortEdge][kShortEdge];
+  Row total = allEqual(0.0f);
+  for (int n = 0; n <= x.high - x.low; ++n) {
+    const float dx = float(x.low + n) - p.rest[0];
+    const auto aside = hn::Set(d, dx * dx * perSquare);
+    for (int pair = 0; pair < 2; ++pair)
+      for (size_t k = 0; k < kParts; ++k) {
+        const auto value = Kernel::at(hn::Add(pairs[pair].part[k], aside));
+        hn::StoreU(value, d, values[n][2 * pair] + k * kLanes);
+        total.part[k] = hn::Add(total.part[k], value);
+      }
+  }
+  const float scale = float(double(p.scale) / sumOf(total));
+  const TileClip clip(p, x, y, z.low);
+  touch(p, clip, z, tile);
+  for (int xAt = clip.x.low; xAt <= clip.x.high; ++xAt)
+    for (int yAt = clip.y.low; yAt <= clip.y.high; ++yAt)
+      addShort(values[xAt - x.low][yAt - y.low], scale, tileRow(p, clip, xAt, yAt, tile));
+}
+
+/// Whether no axis reaches over more than four voxels.
+HWY_INLINE bool isShort(const SplatRecord& p) {
+  constexpr float kSurely = 1.5f;  // 2r + 1 = 4
+  if (p.radius < kSurely) return true;
+  if (p.radius > 2.0f) return false;
+  for (const float rest : p.rest) {
+    const Span span = spanOf(rest, p.radius);
+    if (span.high - span.low >= kShortEdge) return false;
+  }
+  return true;
+}
+
 template <int kRows>
 HWY_INLINE void gaussianIntoTile(const SplatRecord& p, const SplatTile& tile) {
   const float perSquare = 1.0f / (p.radius * p.radius);
@@ -430,6 +498,39 @@ HWY_INLINE void gaussianIntoTile(const SplatRecord& p, const SplatTile& tile) {
   }
 }
 
+/// The Gaussian of a particle of at most four voxels along each axis.
+HWY_INLINE void shortGaussianIntoTile(const SplatRecord& p, const SplatTile& tile) {
+  const float perSquare = 1.0f / (p.radius * p.radius);
+  Span span[3];
+  // Four factors an axis; the fourth axis fills the row.
+  alignas(64) float factors[2 * kLeafEdge];
+  for (int axis = 0; axis < 3; ++axis) {
+    span[axis] = spanOf(p.rest[axis], p.radius);
+    for (int n = 0; n < kShortEdge; ++n) {
+      const float apart = float(span[axis].low + n) - p.rest[axis];
+      factors[axis * kShortEdge + n] =
+          span[axis].low + n <= span[axis].high ? apart * apart * perSquare : 1.0f;
+    }
+  }
+  std::fill_n(factors + 3 * kShortEdge, kShortEdge, 1.0f);
+  for (size_t at = 0; at < 2 * kLeafEdge; at += kLanes)
+    hn::StoreU(Gaussian::at(hn::LoadU(D(), factors + at)), D(), factors + at);
+  double product = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* const f = factors + axis * kShortEdge;
+    product *= (double(f[0]) + double(f[1])) + (double(f[2]) + double(f[3]));
+  }
+  const float scale = float(double(p.scale) / product);
+  const TileClip clip(p, span[0], span[1], span[2].low);
+  touch(p, clip, span[2], tile);
+  for (int x = clip.x.low; x <= clip.x.high; ++x) {
+    const float along = factors[x - span[0].low] * scale;
+    for (int y = clip.y.low; y <= clip.y.high; ++y)
+      addShort(factors + 2 * kShortEdge, along * factors[kShortEdge + y - span[1].low],
+               tileRow(p, clip, x, y, tile));
+  }
+}
+
 template <int kRows>
 HWY_INLINE void oneIntoTile(SplatKernel kernel, const SplatRecord& p, const SplatTile& tile) {
   if (kernel == SplatKernel::gaussian)
@@ -440,11 +541,22 @@ HWY_INLINE void oneIntoTile(SplatKernel kernel, const SplatRecord& p, const Spla
     radialIntoTile<SmoothSphere, kRows>(p, tile);
 }
 
+HWY_INLINE void oneShortIntoTile(SplatKernel kernel, const SplatRecord& p, const SplatTile& tile) {
+  if (kernel == SplatKernel::gaussian)
+    shortGaussianIntoTile(p, tile);
+  else if (kernel == SplatKernel::wendland)
+    shortIntoTile<Wendland>(p, tile);
+  else
+    shortIntoTile<SmoothSphere>(p, tile);
+}
+
 void intoTile(SplatKernel kernel, const SplatRecord* records, size_t count, const SplatTile& tile) {
   // Up to this radius a particle reaches over 8 voxels at most.
   constexpr float kOneRow = 3.5f;
   for (size_t n = 0; n < count; ++n)
-    if (records[n].radius <= kOneRow)
+    if (isShort(records[n]))
+      oneShortIntoTile(kernel, records[n], tile);
+    else if (records[n].radius <= kOneRow)
       oneIntoTile<1>(kernel, records[n], tile);
     else
       oneIntoTile<2>(kernel, records[n], tile);
