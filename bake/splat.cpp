@@ -1,6 +1,6 @@
 // Particles → sparse grids. Tiles of 64³ voxels are filled in parallel, each by its own particles in a fixed
-// order, leaf by leaf; nothing is shared while they fill. Depends on splat_places, splat_kernels, volume,
-// OpenVDB, TBB.
+// order, leaf by leaf; nothing is shared while they fill. Depends on the other splat files, volume, OpenVDB,
+// TBB.
 #include "bake/splat.h"
 
 #include <openvdb/tools/Prune.h>
@@ -9,14 +9,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
-#include "bake/splat_places.h"
-#include "bake/voxelize_kernels.h"
+#include "bake/splat_batch.h"
+#include "bake/splat_leaf.h"
+#include "bake/splat_shaped.h"
 #include "base/hash.h"
 #include "volume/vdb_file.h"
 
@@ -29,36 +27,11 @@ struct SplatGrids {
 namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
-using VelocityLeaf = openvdb::Vec3STree::LeafNodeType;
 using openvdb::Coord;
 
-constexpr int kTileLeaves = kTileEdge / kLeafEdge;
-constexpr int kLeavesOfTile = kTileLeaves * kTileLeaves * kTileLeaves;
-constexpr int kWays = 3;
 // Particles that a tile takes in at a time: their records stay in the second cache, and their sums are added
 // up apart, so that ten million particles in one voxel lose no digits.
 constexpr size_t kBatch = 16384;
-constexpr int kExtraCount = 5;
-constexpr float kHalfLargest = 65504.0f;
-constexpr int kWordBits = 64;
-
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-/// Sums of the grids beside density.
-struct ExtraSums {
-  float values[kExtraCount][kLeafVoxels];
-};
-
-/// One leaf while it fills, then what it becomes.
-struct OpenLeaf {
-  std::unique_ptr<Leaf> density, temperature, age;
-  std::unique_ptr<VelocityLeaf> velocity;
-  std::unique_ptr<ExtraSums> extras;
-};
 
 /// Room for one tile's voxels, which a thread keeps for its next tile. All 0 between tiles, but for what lies
 /// outside of the tile.
@@ -83,16 +56,10 @@ class Splatter {
       : particles_(particles),
         settings_(settings),
         places_(particles, settings),
-        extras_(settings.vel || settings.temperature || settings.age),
-        shaped_(places_.anyShaped()) {
-    if (settings_.box) {
-      const double h = settings_.voxelSize;
-      for (int axis = 0; axis < 3; ++axis) {
-        box_.min()[axis] = int(std::ceil(settings_.box->low[axis] / h));
-        box_.max()[axis] = int(std::floor(settings_.box->high[axis] / h));
-      }
-    }
-  }
+        leaves_(settings),
+        shaping_(particles, settings),
+        sorter_(particles, settings, places_, scales_),
+        extras_(leaves_.extras()) {}
 
   Splatted run() {
     findScales();
@@ -114,10 +81,10 @@ class Splatter {
       double sums[kAtOnce];
       for (size_t n = begin; n < end; ++n) {
         const double density = double(particles_.mass[n]) / volume;
-        if (shaped_) {
+        if (places_.anyShaped()) {
           const SplatFrame f = places_.frameOf(n);
           if (f.way == SplatWay::shaped) {
-            const double sum = shapedSum(n, f);
+            const double sum = shaping_.sum(n, f);
             // Where noise has eaten all of it, it is kept as a point.
             scales_[n] = sum > 0.0 ? float(density / sum) : -float(density);
             continue;
@@ -125,7 +92,7 @@ class Splatter {
         }
         const SplatRecord record = places_.placeOf(n);
         scales_[n] = float(density);
-        if (record.radius <= 1.0f || isSmall(record)) continue;
+        if (record.radius <= 1.0f || sorter_.isSmall(record)) continue;
         owner[count] = n;
         records[count++] = record;
       }
@@ -135,98 +102,17 @@ class Splatter {
     });
   }
 
-  /// Whether a tile takes the particle whole, and scales its kernel itself.
-  bool isSmall(const SplatRecord& record) const {
-    return !extras_ && !shaped_ && record.radius > 1.0f && record.radius <= SplatTile::kWidest;
-  }
-
-  /// The field on the voxels from `origin` in the particle's own frame, or null where nothing erodes.
-  const float* fieldAt(size_t n, const SplatFrame& f, const Coord& origin, float* values) const {
-    if (f.shape.erosion == 0.0f) return nullptr;
-    float x[kLeafVoxels], y[kLeafVoxels], z[kLeafVoxels];
-    for (int v = 0; v < kLeafVoxels; ++v) {
-      const Coord at = origin + Leaf::offsetToLocalCoord(openvdb::Index(v));
-      x[v] = (float(at.x() - f.record.cell[0]) - f.record.rest[0]) / f.record.radius;
-      y[v] = (float(at.y() - f.record.cell[1]) - f.record.rest[1]) / f.record.radius;
-      z[v] = (float(at.z() - f.record.cell[2]) - f.record.rest[2]) / f.record.radius;
-    }
-    // Each particle lies elsewhere in the field, by up to 1024 radii.
-    constexpr uint32_t kTenBits = 1023;
-    const uint32_t h = motion::hashBits(particles_.id.empty() ? uint32_t(n) : particles_.id[n]);
-    const glm::dvec3 elsewhere(h & kTenBits, (h >> 10) & kTenBits, (h >> 20) & kTenBits);
-    settings_.erosion->evaluate(Points{elsewhere, size_t(kLeafVoxels), x, y, z}, values);
-    return values;
-  }
-
-  /// False where no voxel of the leaf can be within reach of the line that the particle is drawn along.
-  static bool mayReach(const SplatFrame& f, const Coord& origin) {
-    constexpr float kToCentre = 3.5f, kToCorner = 6.0622f;  // half of 7 voxels, and √3 of that
-    float apart[3], dotted = 0.0f, length = 0.0f;
-    for (int axis = 0; axis < 3; ++axis) {
-      apart[axis] = float(origin[axis] - f.record.cell[axis]) + kToCentre - f.record.rest[axis];
-      dotted += apart[axis] * f.shape.stretch[axis];
-      length += f.shape.stretch[axis] * f.shape.stretch[axis];
-    }
-    const float t = length > 0.0f ? std::clamp(dotted / length, -0.5f, 0.5f) : 0.0f;
-    float squared = 0.0f;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float e = apart[axis] - t * f.shape.stretch[axis];
-      squared += e * e;
-    }
-    const float reach = (f.record.radius + kToCorner) * 1.001f;  // room for rounding
-    return squared <= reach * reach;
-  }
-
-  double shapedSum(size_t n, const SplatFrame& f) const {
-    double sum = 0.0;
-    float weights[kLeafVoxels], field[kLeafVoxels];
-    for (int x = f.low.x & ~(kLeafEdge - 1); x <= f.high.x; x += kLeafEdge)
-      for (int y = f.low.y & ~(kLeafEdge - 1); y <= f.high.y; y += kLeafEdge)
-        for (int z = f.low.z & ~(kLeafEdge - 1); z <= f.high.z; z += kLeafEdge) {
-          const Coord origin(x, y, z);
-          if (!mayReach(f, origin)) continue;
-          sum += splatShaped(settings_.kernel, f.record, f.shape, origin.data(), fieldAt(n, f, origin, field),
-                             weights);
-        }
-    return sum;
-  }
-
-  /// The leaves of a tile that a particle reaches, and the way it takes there.
-  struct Reach {
-    uint8_t low[3], high[3], way;
-
-    bool empty() const { return low[0] > high[0] || low[1] > high[1] || low[2] > high[2]; }
-    /// Calls body with the number of the list that each leaf has for this way.
-    template <class Body>
-    void forEachList(const Body& body) const {
-      for (int x = low[0]; x <= high[0]; ++x)
-        for (int y = low[1]; y <= high[1]; ++y)
-          for (int z = low[2]; z <= high[2]; ++z)
-            body(size_t(((x * kTileLeaves + y) * kTileLeaves + z) * kWays + way));
-    }
-  };
-
-  /// Particles of one batch of a tile, and for each leaf and way those that reach it.
-  struct Batch {
-    std::span<const uint32_t> particles;
-    std::vector<SplatRecord> records;             // those that leaves take, cells in the tile's frame
-    std::vector<uint32_t> owners;                 // the particle of each record
-    std::vector<SplatRecord> small, smallSorted;  // those that the tile takes whole, by place along x
-    std::vector<SplatExtras> extras;
-    std::vector<uint32_t> starts, list;
-  };
-
   TileResult fillTile(size_t tile) const {
     const glm::ivec3 at = places_.tileOrigin(tile);
     const Coord origin(at.x, at.y, at.z);
     std::vector<OpenLeaf> leaves(kLeavesOfTile);
     const std::span<const uint32_t> all = places_.particlesOf(tile);
-    Batch batch;
+    SplatBatch batch;
     const size_t batches = (all.size() + kBatch - 1) / kBatch;
     for (size_t b = 0; b < batches; ++b) {
       const size_t begin = all.size() * b / batches, end = all.size() * (b + 1) / batches;
       batch.particles = all.subspan(begin, end - begin);
-      sortByLeaf(origin, batch);
+      sorter_.sort(at, batch);
       addSmall(batch, origin, leaves);
       forEachLeaf(batch.list.size(), [&](int leaf) { addToLeaf(batch, origin, leaf, leaves[size_t(leaf)]); });
     }
@@ -235,7 +121,7 @@ class Splatter {
     std::vector<float> maxima(kLeavesOfTile, 0.0f);
     forEachLeaf(all.size(), [&](int leaf) {
       const size_t n = size_t(leaf);
-      if (leaves[n].density) closeLeaf(originOf(origin, leaf), leaves[n], ledgers[n], maxima[n]);
+      if (leaves[n].density) leaves_.close(originOf(origin, leaf), leaves[n], ledgers[n], maxima[n]);
     });
     float constantValue = 0.0f;
     bool constantState = false;
@@ -272,83 +158,12 @@ class Splatter {
                          leaf / kTileLeaves % kTileLeaves * kLeafEdge, leaf % kTileLeaves * kLeafEdge);
   }
 
-  void sortByLeaf(const Coord& tile, Batch& batch) const {
-    batch.records.clear();
-    batch.owners.clear();
-    batch.small.clear();
-    batch.extras.clear();
-    std::vector<Reach> reaches;
-    batch.starts.assign(size_t(kLeavesOfTile * kWays) + 1, 0);
-    // Particles of a tile lie far apart in memory: asked for this many ahead, they are there when they are
-    // needed.
-    constexpr size_t kAhead = 16;
-    const size_t count = batch.particles.size();
-    for (size_t k = 0; k < count; ++k) {
-      const size_t n = batch.particles[k], soon = batch.particles[std::min(k + kAhead, count - 1)];
-      places_.prefetch(soon);
-      __builtin_prefetch(scales_.data() + soon);
-      Reach reach;
-      const SplatRecord record = recordOf(n, tile, reach);
-      if (isSmall(record)) {
-        if (!reach.empty()) batch.small.push_back(record);
-        continue;
-      }
-      batch.records.push_back(record);
-      batch.owners.push_back(uint32_t(n));
-      reaches.push_back(reach);
-      if (extras_) batch.extras.push_back(extrasOf(n));
-      reach.forEachList([&](size_t list) { ++batch.starts[list + 1]; });
-    }
-    for (size_t n = 1; n < batch.starts.size(); ++n) batch.starts[n] += batch.starts[n - 1];
-    batch.list.resize(batch.starts.back());
-    std::vector<uint32_t> next(batch.starts.begin(), batch.starts.end() - 1);
-    for (size_t k = 0; k < reaches.size(); ++k)
-      reaches[k].forEachList([&](size_t list) { batch.list[next[list]++] = uint32_t(k); });
-  }
-
-  /// The particle in a tile's frame, and the leaves of the tile that it reaches.
-  SplatRecord recordOf(size_t n, const Coord& tile, Reach& reach) const {
-    SplatRecord record;
-    SplatWay way = SplatWay::round;
-    int from[3], to[3];
-    if (shaped_) {
-      const SplatFrame f = places_.frameOf(n);
-      record = f.record;
-      way = f.way;
-      for (int axis = 0; axis < 3; ++axis) from[axis] = f.low[axis], to[axis] = f.high[axis];
-      // An eroded particle of which nothing is left is kept as a point.
-      if (scales_[n] < 0.0f) way = SplatWay::point;
-    } else {
-      record = places_.placeOf(n);
-      way = record.radius <= 1.0f ? SplatWay::point : SplatWay::round;
-      for (int axis = 0; axis < 3; ++axis) {
-        const float rest = record.rest[axis], radius = record.radius;
-        const bool point = way == SplatWay::point;
-        from[axis] = record.cell[axis] + (point ? 0 : splatReachBelow(rest, radius));
-        to[axis] = record.cell[axis] + (point ? 1 : splatReachAbove(rest, radius));
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      record.cell[axis] -= tile[axis];
-      const int first = std::max(0, from[axis] - tile[axis]),
-                last = std::min(kTileEdge - 1, to[axis] - tile[axis]);
-      // A tile that rounding alone put on the list has an empty range.
-      reach.low[axis] = uint8_t(first / kLeafEdge);
-      reach.high[axis] = first <= last ? uint8_t(last / kLeafEdge) : 0;
-      if (first > last) reach.low[axis] = 1;
-    }
-    reach.way = uint8_t(way);
-    record.scale = std::abs(scales_[n]);
-    return record;
-  }
-
   /// Adds the batch's small particles through one array, plane after plane along x, so that what they touch
   /// stays near.
-  void addSmall(Batch& batch, const Coord& tile, std::vector<OpenLeaf>& leaves) const {
+  void addSmall(const SplatBatch& batch, const Coord& tile, std::vector<OpenLeaf>& leaves) const {
     if (batch.small.empty()) return;
-    sortAlongX(batch);
     TileRoom& room = rooms_.local();
-    splatIntoTile(settings_.kernel, batch.smallSorted.data(), batch.smallSorted.size(),
+    splatIntoTile(settings_.kernel, batch.small.data(), batch.small.size(),
                   {room.values.data(), room.touched.data()});
     for (int leaf = 0; leaf < kLeavesOfTile; ++leaf) {
       if (room.touched[size_t(leaf)] == 0) continue;
@@ -356,7 +171,7 @@ class Splatter {
       OpenLeaf& open = leaves[size_t(leaf)];
       const Coord at = originOf(Coord(0), leaf);
       const bool fresh = !open.density;
-      if (fresh) openLeaf(tile + at, open);
+      if (fresh) leaves_.open(tile + at, open);
       float* to = open.density->buffer().data();
       for (int x = 0; x < kLeafEdge; ++x)
         for (int y = 0; y < kLeafEdge; ++y, to += kLeafEdge) {
@@ -372,47 +187,12 @@ class Splatter {
     }
   }
 
-  /// A stable counting sort by cell: equal cells keep their order.
-  static void sortAlongX(Batch& batch) {
-    // Cells of small particles lie up to their reach outside the tile.
-    constexpr int kOutside = 8;
-    std::array<uint32_t, kTileEdge + 2 * kOutside + 1> next{};
-    for (const SplatRecord& p : batch.small) ++next[size_t(p.cell[0] + kOutside) + 1];
-    for (size_t n = 1; n < next.size(); ++n) next[n] += next[n - 1];
-    batch.smallSorted.resize(batch.small.size());
-    for (const SplatRecord& p : batch.small) batch.smallSorted[next[size_t(p.cell[0] + kOutside)]++] = p;
-  }
-
-  void openLeaf(const Coord& origin, OpenLeaf& open) const {
-    open.density = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, 0.0f);
-    open.density->allocate();
-    std::memset(open.density->buffer().data(), 0, kLeafVoxels * sizeof(float));
-    if (extras_) open.extras = std::make_unique<ExtraSums>();  // all 0
-  }
-
-  SplatExtras extrasOf(size_t n) const {
-    SplatExtras e{};
-    if (settings_.vel) {
-      e.value[0] = particles_.vx[n];
-      e.value[1] = particles_.vy[n];
-      e.value[2] = particles_.vz[n];
-    }
-    if (settings_.temperature) e.value[3] = particles_.temperature[n];
-    if (settings_.age) e.value[4] = particles_.age[n];
-    return e;
-  }
-
-  std::span<const uint32_t> listOf(const Batch& batch, int leaf, SplatWay way) const {
-    const size_t list = size_t(leaf * kWays + int(way));
-    return std::span(batch.list).subspan(batch.starts[list], batch.starts[list + 1] - batch.starts[list]);
-  }
-
-  void addToLeaf(const Batch& batch, const Coord& tile, int leaf, OpenLeaf& open) const {
-    const size_t first = size_t(leaf * kWays);
-    if (batch.starts[first] == batch.starts[first + kWays]) return;
+  void addToLeaf(const SplatBatch& batch, const Coord& tile, int leaf, OpenLeaf& open) const {
+    const size_t first = size_t(leaf * kSplatWays);
+    if (batch.starts[first] == batch.starts[first + kSplatWays]) return;
     const Coord inTile = originOf(Coord(0), leaf);
     if (!open.density) {
-      openLeaf(tile + inTile, open);
+      leaves_.open(tile + inTile, open);
       addBatch(batch, tile, inTile, leaf,
                {open.density->buffer().data(), extras_ ? open.extras->values : nullptr});
       return;
@@ -427,23 +207,23 @@ class Splatter {
       for (int v = 0; v < kLeafVoxels; ++v) open.extras->values[e][v] += extras.values[e][v];
   }
 
-  void addBatch(const Batch& batch, const Coord& tile, const Coord& inTile, int leaf,
+  void addBatch(const SplatBatch& batch, const Coord& tile, const Coord& inTile, int leaf,
                 const SplatLeaf& sums) const {
-    const std::span<const uint32_t> round = listOf(batch, leaf, SplatWay::round);
+    const std::span<const uint32_t> round = batch.listOf(leaf, SplatWay::round);
     splatIntoLeaf(settings_.kernel, batch.records.data(), extras_ ? batch.extras.data() : nullptr,
                   round.data(), round.size(), inTile.data(), sums);
-    for (const uint32_t k : listOf(batch, leaf, SplatWay::point)) addPoint(batch, k, inTile, sums);
-    for (const uint32_t k : listOf(batch, leaf, SplatWay::shaped)) addShaped(batch, k, tile, inTile, sums);
+    for (const uint32_t k : batch.listOf(leaf, SplatWay::point)) addPoint(batch, k, inTile, sums);
+    for (const uint32_t k : batch.listOf(leaf, SplatWay::shaped)) addShaped(batch, k, tile, inTile, sums);
   }
 
-  void addWeight(const Batch& batch, uint32_t k, int voxel, float weight, const SplatLeaf& sums) const {
+  void addWeight(const SplatBatch& batch, uint32_t k, int voxel, float weight, const SplatLeaf& sums) const {
     sums.density[voxel] += weight;
     for (int e = 0; e < kExtraCount && extras_; ++e)
       sums.extra[e][voxel] += weight * batch.extras[k].value[e];
   }
 
   /// Shares a point out over the eight voxels round it by trilinear weights, which keep mass and centre.
-  void addPoint(const Batch& batch, uint32_t k, const Coord& inTile, const SplatLeaf& sums) const {
+  void addPoint(const SplatBatch& batch, uint32_t k, const Coord& inTile, const SplatLeaf& sums) const {
     const SplatRecord& p = batch.records[k];
     for (int corner = 0; corner < 8; ++corner) {
       const int step[] = {corner >> 2, (corner >> 1) & 1, corner & 1};
@@ -459,96 +239,16 @@ class Splatter {
     }
   }
 
-  void addShaped(const Batch& batch, uint32_t k, const Coord& tile, const Coord& inTile,
+  void addShaped(const SplatBatch& batch, uint32_t k, const Coord& tile, const Coord& inTile,
                  const SplatLeaf& sums) const {
     const size_t n = batch.owners[k];
     const SplatFrame f = places_.frameOf(n);
     const Coord origin = tile + inTile;
-    if (!mayReach(f, origin)) return;
-    float weights[kLeafVoxels], field[kLeafVoxels];
-    const double sum = splatShaped(settings_.kernel, f.record, f.shape, origin.data(),
-                                   fieldAt(n, f, origin, field), weights);
+    float weights[kLeafVoxels];
+    const double sum = shaping_.weights(n, f, {origin.x(), origin.y(), origin.z()}, weights);
     if (sum == 0.0) return;
     for (int v = 0; v < kLeafVoxels; ++v)
       if (weights[v] > 0.0f) addWeight(batch, k, v, weights[v] * batch.records[k].scale, sums);
-  }
-
-  /// Turns sums into what the file stores, and adds up the masses, in units of a voxel's volume.
-  void closeLeaf(const Coord& origin, OpenLeaf& open, SplatLedger& ledger, float& maximum) const {
-    float* const values = open.density->buffer().data();
-    if (settings_.box) cutToBox(origin, values);
-    const LeafRules rules{float(settings_.cutoff),
-                          settings_.half ? kHalfLargest : std::numeric_limits<float>::max(), settings_.half};
-    float sums[kLeafVoxels];
-    std::copy_n(values, kLeafVoxels, sums);
-    const LeafScan scan = scanLeaf(rules, values);
-    if (!scan.storable) refuseUnstorable(origin, sums, rules.limit);
-    const SplatLosses losses = splatLosses(sums, values, rules.cutoff);
-    ledger.splatted = losses.before;
-    ledger.lostToCutoff = losses.cut;
-    ledger.stored = losses.before - losses.cut - losses.rounded;
-    maximum = scan.maximum;
-    if (!scan.active) {
-      open.density.reset();
-      return;
-    }
-    Leaf::NodeMaskType mask;
-    for (int word = 0; word < kLeafVoxels / kWordBits; ++word)
-      mask.getWord<uint64_t>(openvdb::Index(word)) = scan.mask[word];
-    open.density->setValueMask(mask);
-    if (extras_) closeExtras(origin, mask, sums, open);
-  }
-
-  static std::unique_ptr<Leaf> leafOf(const Coord& origin, const Leaf::NodeMaskType& mask,
-                                      const float* values) {
-    auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, 0.0f);
-    leaf->allocate();
-    std::copy_n(values, kLeafVoxels, leaf->buffer().data());
-    leaf->setValueMask(mask);
-    return leaf;
-  }
-
-  /// Means weighted by density, where density is stored.
-  void closeExtras(const Coord& origin, const Leaf::NodeMaskType& mask, const float* density,
-                   OpenLeaf& open) const {
-    auto& values = open.extras->values;
-    for (auto& extra : values) {
-      for (int v = 0; v < kLeafVoxels; ++v)
-        extra[v] = mask.isOn(openvdb::Index(v)) ? extra[v] / density[v] : 0.0f;
-      if (!settings_.half) continue;
-      for (int v = 0; v < kLeafVoxels; ++v)
-        if (std::abs(extra[v]) > kHalfLargest)
-          throw SplatError("a velocity, temperature or age reaches " + shown(double(extra[v])) +
-                           ", more than half precision holds (65504); ask for 'precision: float'");
-      roundToHalf(extra, kLeafVoxels);
-    }
-    if (settings_.vel) {
-      open.velocity = std::make_unique<VelocityLeaf>(openvdb::PartialCreate(), origin, openvdb::Vec3s(0.0f));
-      open.velocity->allocate();
-      for (int v = 0; v < kLeafVoxels; ++v)
-        open.velocity->buffer().data()[v] = openvdb::Vec3s(values[0][v], values[1][v], values[2][v]);
-      open.velocity->setValueMask(mask);
-    }
-    if (settings_.temperature) open.temperature = leafOf(origin, mask, values[3]);
-    if (settings_.age) open.age = leafOf(origin, mask, values[4]);
-    open.extras.reset();
-  }
-
-  [[noreturn]] void refuseUnstorable(const Coord& origin, const float* values, float limit) const {
-    int v = 0;
-    while (v < kLeafVoxels - 1 && values[v] <= limit) ++v;
-    const Coord at = origin + Leaf::offsetToLocalCoord(openvdb::Index(v));
-    const double h = settings_.voxelSize;
-    throw SplatError(
-        "the density reaches " + shown(double(values[v])) + " at (" + shown(at.x() * h) + ", " +
-        shown(at.y() * h) + ", " + shown(at.z() * h) + "), more than " +
-        (settings_.half ? "half precision holds (65504); ask for 'precision: float'" : "a float holds"));
-  }
-
-  void cutToBox(const Coord& origin, float* values) const {
-    if (box_.isInside(openvdb::CoordBBox::createCube(origin, kLeafEdge))) return;
-    for (int v = 0; v < kLeafVoxels; ++v)
-      if (!box_.isInside(origin + Leaf::offsetToLocalCoord(openvdb::Index(v)))) values[v] = 0.0f;
   }
 
   Splatted gather(std::vector<TileResult>& tiles) const {
@@ -584,7 +284,7 @@ class Splatter {
     if (constant) openvdb::tools::prune(density->tree());
     close(*density, *grids, result);
     if (settings_.box)
-      for (const Coord& corner : {box_.min(), box_.max()}) active.expand(corner);
+      for (const Coord& corner : {leaves_.box().min(), leaves_.box().max()}) active.expand(corner);
     result.voxelsActive = count;
     if (!active.empty()) {
       const Coord size = active.dim();
@@ -617,7 +317,8 @@ class Splatter {
   void close(Grid& grid, SplatGrids& grids, Splatted& result) const {
     // Active corners give every frame the same box.
     if (settings_.box)
-      for (const Coord& corner : {box_.min(), box_.max()}) grid.tree().setActiveState(corner, true);
+      for (const Coord& corner : {leaves_.box().min(), leaves_.box().max()})
+        grid.tree().setActiveState(corner, true);
     // Blender 3.4 draws nothing for a grid that holds active tiles alone.
     if (grid.tree().leafCount() == 0) grid.tree().voxelizeActiveTiles();
     result.gridBytes += bytesOf(grid.tree());
@@ -627,10 +328,12 @@ class Splatter {
   const SplatParticles& particles_;
   const SplatSettings& settings_;
   const SplatPlaces places_;
-  const bool extras_, shaped_;
-  openvdb::CoordBBox box_;
   mutable tbb::enumerable_thread_specific<TileRoom> rooms_;
   std::vector<float> scales_;  // below 0: a point, since noise left nothing else
+  const SplatLeaves leaves_;
+  const SplatShaping shaping_;
+  const SplatSorter sorter_;
+  const bool extras_;
 };
 
 }  // namespace

@@ -195,6 +195,10 @@ void SplatPlaces::forEachTileOf(size_t n, const Body& body) const {
       low[axis] = floorToInt(at - reach) - lowTile_[axis];
       high[axis] = floorToInt(at + reach) - lowTile_[axis];
     }
+    if (low == high) {  // most of those that are small beside a tile
+      body((size_t(low.x) * size_t(tileBox_.y) + size_t(low.y)) * size_t(tileBox_.z) + size_t(low.z));
+      return;
+    }
   }
   for (int x = low.x; x <= high.x; ++x)
     for (int y = low.y; y <= high.y; ++y)
