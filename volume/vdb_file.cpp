@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "volume/vdb_body.h"
 #include "volume/vdb_header.h"
 #include "volume/vdb_writer.h"
 
@@ -104,7 +105,7 @@ uint64_t writeVdb(const std::string& path, const openvdb::GridCPtrVec& grids, co
 
 void withVdbFile(const std::string& path, const std::function<void(openvdb::io::File&)>& body) {
   initializeOpenVdb();
-  readVdbHeader(path);
+  checkVdbBody(path, readVdbHeader(path));
   readGuarded(path, [&] {
     openvdb::io::File file(path);
     constexpr bool kDelayedLoad = false;

@@ -115,13 +115,18 @@ VdbGridEntry readEntry(BoundedReader& file) {
     entry.half = true;
     entry.type.resize(entry.type.size() - kHalfSuffix.size());
   }
-  file.readText();  // the grid whose tree this one shares, if any
+  entry.sharesTree = !file.readText().empty();
   const int64_t gridPosition = file.read<int64_t>();
   const int64_t blockPosition = file.read<int64_t>();
   const int64_t end = file.read<int64_t>();
   const int64_t here = static_cast<int64_t>(file.position());
-  if (gridPosition < here || blockPosition < gridPosition || end < blockPosition)
+  // A grid without a tree of its own has no leaves, and 0 for their place.
+  const bool inOrder =
+      entry.sharesTree ? gridPosition <= end : gridPosition <= blockPosition && blockPosition <= end;
+  if (gridPosition < here || !inOrder)
     file.fail("is damaged: the places of grid '" + entry.name + "' make no sense");
+  entry.grid = static_cast<uint64_t>(gridPosition);
+  entry.blocks = static_cast<uint64_t>(blockPosition);
   entry.end = static_cast<uint64_t>(end);
   return entry;
 }

@@ -10,10 +10,13 @@
 namespace nephele {
 
 struct VdbGridEntry {
-  std::string name;    // without the suffix that OpenVDB adds to repeated names
-  std::string type;    // "Tree_float_5_4_3", …
-  bool half = false;   // stored with half precision
-  uint64_t begin = 0;  // byte range in the file
+  std::string name;         // without the suffix that OpenVDB adds to repeated names
+  std::string type;         // "Tree_float_5_4_3", …
+  bool half = false;        // stored with half precision
+  bool sharesTree = false;  // it has no tree of its own in the file
+  uint64_t begin = 0;       // byte range in the file: from the entry's head,
+  uint64_t grid = 0;        // with the grid itself (compression, metadata, transform, topology) from here on
+  uint64_t blocks = 0;      // and its leaves' buffers from here
   uint64_t end = 0;
 };
 
