@@ -46,6 +46,8 @@ TEST(VdbBody, LetsPassWhatIsWhole) {
       tiles->fill(openvdb::CoordBBox({0, 0, 0}, {7, 7, 7}), 0.25f);  // and no leaf
       file.write(openvdb::GridCPtrVec{grid, sharing, vectors, tiles});
       EXPECT_EQ(complaintOf(path), "accepted") << "compression " << compression;
+      file.write(openvdb::GridCPtrVec{vectors});
+      EXPECT_EQ(complaintOf(path), "accepted") << "vectors alone, compression " << compression;
     }
   }
 }
