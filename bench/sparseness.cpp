@@ -87,17 +87,20 @@ void compareSparseness(Table& table) {
   const FieldPtr sparse = fogIn(sparseClouds()), full = fogIn(domain());
   const examples::SampleFolder folder;
   const VoxelizeSettings settings{1.0, 0.0, false};
-  const auto bake = [&](const FieldPtr& field) {
+  // Each side has a file of its own: putting a small file in place of a large one costs the removal of the
+  // large one.
+  const auto bake = [&](const FieldPtr& field, const char* file) {
     const Voxelized voxelized = voxelize(*field, settings);
-    writeDensity(folder.file("sparse.vdb"), voxelized, Provenance{});
+    writeDensity(folder.file(file), voxelized, Provenance{});
     return voxelized;
   };
   constexpr int kRepeats = 3;
   constexpr double kMostPercent = 3.0, kPercent = 100.0;
-  const Minima minima = pairedMinima([&] { bake(sparse); }, [&] { bake(full); }, kRepeats);
+  const Minima minima =
+      pairedMinima([&] { bake(sparse, "sparse.vdb"); }, [&] { bake(full, "full.vdb"); }, kRepeats);
   table.add({name, kPercent * minima.ours.clock / minima.theirs.clock, "%", atMost(kMostPercent),
              minima.ours.clock, minima.theirs.clock, kPercent * minima.ours.cpu / minima.theirs.cpu,
-             contentHashOf(bake(sparse))});
+             contentHashOf(bake(sparse, "sparse.vdb"))});
 }
 
 void measurePeakMemory(Table& table, const std::string& bakeProgram) {

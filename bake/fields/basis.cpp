@@ -64,7 +64,7 @@ void evaluateBasis(Basis basis, const NoiseOctave& octave, const Points& points,
   NoiseOctave whole = octave;
   whole.weight = 1.0f;
   std::fill_n(values, points.count, 0.0f);
-  addNoiseAtPoints(whole, points, values);
+  addNoiseAtPoints(&whole, 1, points, values);
 }
 
 void evaluateBasis(Basis basis, const NoiseOctave& octave, const Lattice& lattice, float* values) {

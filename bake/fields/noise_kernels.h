@@ -14,8 +14,8 @@ namespace nephele {
 /// spacings are legal and take the way by points.
 void addNoiseOnLattice(const NoiseOctave* octaves, size_t count, const Lattice& lattice, float* sums);
 
-/// Adds octave.weight · noise at each point to sums[points.count]: equal to shared::perlinNoise at the place
-/// in its cell.
-void addNoiseAtPoints(const NoiseOctave& octave, const Points& points, float* sums);
+/// Adds Σ octave.weight · noise at each point to sums[points.count], octave by octave: equal to
+/// shared::perlinNoise at the place in its cell. Fastest where points lie near each other.
+void addNoiseAtPoints(const NoiseOctave* octaves, size_t count, const Points& points, float* sums);
 
 }  // namespace nephele

@@ -1,5 +1,5 @@
-// The noise kernels without SIMD, in the operations and the order of the SIMD ones, so that the bits are
-// theirs. A part of noise_kernels.cpp, which includes it inside the namespace of its scalar target; it
+// The lattice kernel without SIMD, in the operations and the order of the SIMD ones, so that the bits are
+// theirs. A part of noise_lattice.cpp, which includes it inside the namespace of its scalar target; it
 // includes nothing.
 
 struct BlockAxis {
@@ -62,5 +62,3 @@ void addBlock(const NoiseOctave& octave, const BlockAxis& ax, const BlockAxis& a
         sums[i * 64 + j * 8 + k] += weight * mix(a0 + b0 * dz0, a1 + b1 * dz1, az.weight[k]);
       }
 }
-
-size_t addAtPoints(const NoiseOctave&, const Points&, float*) { return 0; }

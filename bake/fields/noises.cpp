@@ -20,7 +20,7 @@ class FractalField final : public Field {
   void evaluate(const Points& points, float* values) const override {
     if (basis_ == Basis::perlin && fold_ == Fold::plain) {
       std::fill_n(values, points.count, level_);
-      for (const NoiseOctave& octave : octaves_) addNoiseAtPoints(octave, points, values);
+      addNoiseAtPoints(octaves_.data(), octaves_.size(), points, values);
     } else {
       sum(points, points.count, values);
     }

@@ -85,7 +85,7 @@ class Warp final : public Field {
     for (size_t axis = 0; axis < 3; ++axis) {
       float* const to = moved.at[axis];
       std::fill_n(to, points.count, 0.0f);
-      for (const NoiseOctave& octave : noise[axis]) addNoiseAtPoints(octave, where, to);
+      addNoiseAtPoints(noise[axis].data(), noise[axis].size(), where, to);
       for (size_t n = 0; n < points.count; ++n) to[n] = from[axis][n] + float(scale_) * to[n];
     }
   }

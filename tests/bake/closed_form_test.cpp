@@ -106,7 +106,7 @@ TEST(Warp, ReadsItsInputAtDisplacedPlaces) {
       float shift = 0.0f;
       for (const NoiseOctave& octave : fbmOctaves(
                {1.0, 2, 2.0, 0.5, 0, shared::seedApart(seed, axis), {}, {}}, {0.01, 2, 0, nullptr}, "warp"))
-        addNoiseAtPoints(octave, Points{p, 1, &zero, &zero, &zero}, &shift);
+        addNoiseAtPoints(&octave, 1, Points{p, 1, &zero, &zero, &zero}, &shift);
       q[axis] += 0.8 * double(shift);
     }
     ASSERT_NEAR(valueAt(*report.warped, p), valueAt(*report.inner, q), 1e-5);
