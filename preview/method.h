@@ -38,7 +38,9 @@ struct PictureRequest {
 struct PictureCost {
   double milliseconds = 0.0;            // from the first draw to the last pixel read back
   double densitySamplesPerPixel = 0.0;  // densities read for the whole picture / pixels
-  uint64_t gpuBytes = 0;                // bricks, index, picture, parameters
+  uint64_t gpuBytes = 0;                // bricks, index, light cache, picture, parameters
+  uint64_t volumeBytes = 0;             // the same without the picture
+  std::string texel;                    // of the atlas: "r8", "r16f", "r32f"; empty where there is none
   double relativeError = 0.0;           // the picture's own noise as relative RMSE, where the method knows it
 };
 

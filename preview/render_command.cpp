@@ -90,6 +90,8 @@ void writeStats(const std::string& path, const Totals& totals, const Method& met
                                      {"ms_per_frame", totals.cost.milliseconds / frames},
                                      {"samples_per_pixel", totals.cost.densitySamplesPerPixel / frames},
                                      {"gpu_bytes", totals.cost.gpuBytes},
+                                     {"gpu_volume_bytes", totals.cost.volumeBytes},
+                                     {"gpu_texel", totals.cost.texel},
                                      {"gl_renderer", method.renderer},
                                      {"seconds_driver", method.secondsDriver},
                                      {"seconds_shaders", method.secondsShaders},
@@ -136,6 +138,8 @@ class Sequence {
     totals_.cost.milliseconds += cost.milliseconds;
     totals_.cost.densitySamplesPerPixel += cost.densitySamplesPerPixel;
     totals_.cost.gpuBytes = std::max(totals_.cost.gpuBytes, cost.gpuBytes);
+    totals_.cost.volumeBytes = std::max(totals_.cost.volumeBytes, cost.volumeBytes);
+    totals_.cost.texel = cost.texel;
   }
 
   /// Writes the stats of the frames that were rendered, where there are any.

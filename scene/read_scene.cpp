@@ -277,6 +277,11 @@ MarchSettings readMarch(const yaml::Node& node, Diagnostics& out) {
   march.cacheNearVoxels = reader.number("cache_near", march.cacheNearVoxels, kNear);
   march.giveUp = reader.number("give_up", march.giveUp, {0.0, 0.1, true, false});
   march.cacheNearSteps = static_cast<int>(reader.integer("cache_near_steps", march.cacheNearSteps, kNear));
+  std::vector<std::string> names;
+  for (const AtlasPrecision precision : kAtlasPrecisions) names.push_back(nameOf(precision));
+  const std::string name = reader.choice("precision", nameOf(march.precision), names);
+  for (const AtlasPrecision precision : kAtlasPrecisions)
+    if (name == nameOf(precision)) march.precision = precision;
   reader.finish();
   return march;
 }
@@ -329,6 +334,20 @@ std::string nameOf(Look look) { return look == Look::report ? "report" : "physic
 
 std::string nameOf(LightTransmittance transmittance) {
   return transmittance == LightTransmittance::chord ? "chord" : "marched";
+}
+
+std::string nameOf(AtlasPrecision precision) {
+  switch (precision) {
+    case AtlasPrecision::r8:
+      return "r8";
+    case AtlasPrecision::r16f:
+      return "r16f";
+    case AtlasPrecision::r32f:
+      return "r32f";
+    case AtlasPrecision::automatic:
+      break;
+  }
+  return "auto";
 }
 
 std::string nameOf(Environment::Kind kind) {

@@ -142,6 +142,12 @@ struct BackdropColours {
 
 enum class Look { physical, report };
 
+/// How densities are kept for the march: `automatic` (`auto` in files) takes the smallest that is as good
+/// (volume/brick_texel.h).
+enum class AtlasPrecision { automatic, r8, r16f, r32f };
+inline constexpr AtlasPrecision kAtlasPrecisions[] = {AtlasPrecision::automatic, AtlasPrecision::r8,
+                                                      AtlasPrecision::r16f, AtlasPrecision::r32f};
+
 /// Steps in voxels of the level being read.
 struct MarchSettings {
   double stepVoxels = 0.5;
@@ -154,6 +160,7 @@ struct MarchSettings {
   double cacheNearVoxels = 8.0;   // marched towards a light before the volume is asked, from 0 to 16
   int cacheNearSteps = 4;         // in so many steps, from 0 to 16
   double giveUp = 1e-4;           // transmittance below which a ray ends, in (0, 0.1]
+  AtlasPrecision precision = AtlasPrecision::automatic;
   bool operator==(const MarchSettings&) const = default;
 };
 
@@ -195,5 +202,7 @@ std::string writeScene(const Scene& scene, const std::string& folder = {});
 std::string nameOf(Look look);
 std::string nameOf(LightTransmittance transmittance);
 std::string nameOf(Environment::Kind kind);
+/// "auto", "r8", "r16f", "r32f".
+std::string nameOf(AtlasPrecision precision);
 
 }  // namespace nephele

@@ -1,24 +1,29 @@
 // Bricks and light cache as textures, and how the shared walk reads them. Included after the parameters.
-layout(binding = 0) uniform sampler3D atlas;       // bricks of 9³ samples
+layout(binding = 0) uniform sampler3D atlas;       // bricks of 9³ samples, or half as many along an axis
 layout(binding = 1) uniform usampler2D brickIndex; // words of volume/brick_layout.h, x fastest, in rows of the texture's width
 layout(binding = 2) uniform usampler2D blockIndex; // of the light cache's blocks, likewise
 layout(binding = 3) uniform sampler3D columnCache;
 layout(binding = 5) uniform sampler3D skyCache;    // two halves along z
 
-const int kBrickSamples = 9;
+// Whether the atlas's texels are shares of their brick's bound.
+#ifndef NPH_SCALED
+#define NPH_SCALED false
+#endif
 
-uint wordAt(usampler2D index, ivec3 count, ivec3 at) {
+// Of walk.glsl.
+ivec3 wordCorner(uvec2 word);
+ivec3 wordSamples(uvec2 word);
+vec3 keptPosition(uvec2 word, vec3 position);
+float wordMaximum(uvec2 word);
+
+uvec4 wordAt(usampler2D index, ivec3 count, ivec3 at) {
   int i = (at.z * count.y + at.y) * count.x + at.x;
   int width = textureSize(index, 0).x;  // a power of two
-  return texelFetch(index, ivec2(i & (width - 1), i >> findMSB(width)), 0).r;
+  return texelFetch(index, ivec2(i & (width - 1), i >> findMSB(width)), 0);
 }
 
-uint brickWord(ivec3 brick) { return wordAt(brickIndex, params.brickCount.xyz, brick); }
-uint blockWord(ivec3 block) { return wordAt(blockIndex, params.blockCount.xyz, block); }
-
-ivec3 atlasCorner(uint word) {
-  return kBrickSamples * ivec3(word & 255u, (word >> 8u) & 255u, (word >> 16u) & 127u);
-}
+uvec2 brickWord(ivec3 brick) { return wordAt(brickIndex, params.brickCount.xyz, brick).rg; }
+uint blockWord(ivec3 block) { return wordAt(blockIndex, params.blockCount.xyz, block).r; }
 
 #if NPH_FILTER_EXACT
 vec4 mixedFetch(sampler3D volume, ivec3 t, vec3 f) {
@@ -35,10 +40,10 @@ vec4 mixedFetch(sampler3D volume, ivec3 t, vec3 f) {
   return mix(y0, y1, f.z);
 }
 
-float brickValue(sampler3D bricks, uint word, vec3 position) {
-  // A position a hair outside the brick reads on along its outermost cell.
-  ivec3 cell = clamp(ivec3(floor(position)), ivec3(0), ivec3(kBrickSamples - 2));
-  return max(0.0, mixedFetch(bricks, atlasCorner(word) + cell, position - vec3(cell)).r);
+float brickValue(sampler3D bricks, uvec2 word, vec3 position) {
+  vec3 kept = keptPosition(word, position);
+  ivec3 cell = min(ivec3(kept), wordSamples(word) - 2);
+  return mixedFetch(bricks, wordCorner(word) + cell, kept - vec3(cell)).r;
 }
 
 vec4 cacheFetch(sampler3D cache, vec3 texel) {
@@ -46,9 +51,9 @@ vec4 cacheFetch(sampler3D cache, vec3 texel) {
   return mixedFetch(cache, cell, texel - vec3(cell));
 }
 #else
-float brickValue(sampler3D bricks, uint word, vec3 position) {
+float brickValue(sampler3D bricks, uvec2 word, vec3 position) {
   // A texel's centre lies at its index plus a half.
-  vec3 texel = vec3(atlasCorner(word)) + clamp(position, 0.0, float(kBrickSamples - 1)) + 0.5;
+  vec3 texel = vec3(wordCorner(word)) + keptPosition(word, position) + 0.5;
   return textureLod(bricks, texel / vec3(textureSize(bricks, 0)), 0.0).r;
 }
 
@@ -57,7 +62,9 @@ vec4 cacheFetch(sampler3D cache, vec3 texel) {
 }
 #endif
 
-float brickDensity(uint word, vec3 position) { return brickValue(atlas, word, position); }
+float brickDensity(uvec2 word, vec3 position) {
+  return brickValue(atlas, word, position) * (NPH_SCALED ? wordMaximum(word) : 1.0);
+}
 
 float cachedColumn(vec3 texel) { return cacheFetch(columnCache, texel).r; }
 

@@ -2,5 +2,5 @@
 layout(binding = 10) uniform sampler3D heatAtlas;
 layout(binding = 11) uniform usampler2D heatIndex;
 
-uint heatWord(ivec3 brick) { return wordAt(heatIndex, params.heatCount.xyz, brick); }
-float heatValue(uint word, vec3 position) { return brickValue(heatAtlas, word, position); }
+uvec2 heatWord(ivec3 brick) { return wordAt(heatIndex, params.heatCount.xyz, brick).rg; }
+float heatValue(uvec2 word, vec3 position) { return brickValue(heatAtlas, word, position); }

@@ -1,38 +1,41 @@
-// How bricks lie in an atlas and what a word of the index says of each: the GPU and the march compiled as C++
-// read the same. Depends on volume/bricks.h alone; no OpenVDB and no GL.
+// How bricks lie in an atlas and what the index says of each: the GPU and the march compiled as C++ read the
+// same. Depends on the brick headers alone; no OpenVDB and no GL.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "volume/brick_bounds.h"
+#include "volume/brick_texel.h"
 #include "volume/bricks.h"
 
 namespace nephele {
 
-/// One word a brick. Below 2^27 the brick holds no density, and the word is the largest L for which the
-/// aligned cube of 2^L bricks an edge around the brick (aligned to brickMin, and cut at the index's end)
-/// holds none either. Else bits 0–7, 8–15, 16–22 are the brick's place in the atlas along x, y, z; bits 23–24
-/// its level; bits 25–26 say by what share of its maximum its minimum is at least (kMinimumShares); bits
-/// 27–31 are c in 1…31: no sample exceeds `maximum` · 2^((c − 31)/2), the least such c.
+/// Two words a brick. x: bits 0–11 and 12–23 are the texel x and y of its first sample in the atlas, bits
+/// 24–31 the code of its maximum (brick_bounds). Where that is 0 the brick holds no density, and y is the
+/// largest L for which the aligned cube of 2^L bricks an edge around it (aligned to brickMin, and cut at the
+/// index's end) holds none either. Else y: bits 0–11 are the texel z; bits 12–14 say along which axes it
+/// keeps 5 samples instead of 9, and bits 15–17 whether those are its upper ones: beyond them all is 0; bits
+/// 18–20 its level; bits 24–31 the share of the maximum that no sample falls below.
 namespace brick_word {
-inline constexpr int kPlaceShiftY = 8, kPlaceShiftZ = 16, kLevelShift = 23, kMinimumShift = 25,
-                     kMaximumShift = 27;
-inline constexpr uint32_t kPlaceMask = 255, kPlaceMaskZ = 127, kLevelMask = 3, kMinimumMask = 3;
-inline constexpr uint32_t kFirstFull = 1u << kMaximumShift;
-inline constexpr int kMostCode = 31;
-inline constexpr float kMinimumShares[] = {0.0f, 0.5f, 0.875f, 1.0f};
+inline constexpr uint32_t kCornerBits = 12, kCornerMask = (1u << kCornerBits) - 1, kMaximumShift = 24,
+                          kMinimumShift = 24, kHalvedShift = 12, kUpperShift = 15, kLevelShift = 18,
+                          kLevelMask = 7;
 
-inline bool isEmpty(uint32_t word) { return word < kFirstFull; }
-inline glm::ivec3 place(uint32_t word) {
-  return {static_cast<int>(word & kPlaceMask), static_cast<int>(word >> kPlaceShiftY & kPlaceMask),
-          static_cast<int>(word >> kPlaceShiftZ & kPlaceMaskZ)};
+inline bool isEmpty(const glm::uvec2& word) { return word.x >> kMaximumShift == 0; }
+inline uint32_t maximumCode(const glm::uvec2& word) { return word.x >> kMaximumShift; }
+/// First texel in the atlas.
+inline glm::ivec3 corner(const glm::uvec2& word) {
+  return {static_cast<int>(word.x & kCornerMask), static_cast<int>(word.x >> kCornerBits & kCornerMask),
+          static_cast<int>(word.y & kCornerMask)};
 }
-/// The code c of the smallest bound that `value` does not exceed; value in (0, maximum].
-uint32_t maximumCode(float value, float maximum);
-/// The largest of the four shares that minimum/maximum reaches.
-uint32_t minimumCode(float minimum, float maximum);
 }  // namespace brick_word
+
+/// Samples along an axis of which a brick keeps half: its 4 cells, and the next brick's first sample.
+inline constexpr int kHalfSamples = kBrickCells / 2 + 1;
 
 /// Bricks along the edge of a block of the light cache.
 inline constexpr int kBlockBricks = 2;
@@ -40,26 +43,58 @@ inline constexpr int kBlockBricks = 2;
 inline constexpr int kMostBlockSamples = kBlockBricks * kBrickCells + 1;
 inline constexpr int kMostCachedLights = 8;
 
+/// One brick of the atlas.
+struct BrickSlot {
+  const float* samples = nullptr;  // all 729, the volume's own
+  glm::ivec3 corner{0};            // first texel
+  glm::ivec3 first{0};             // first sample that is kept, 0 or 4 along each axis
+  glm::ivec3 size{kBrickSamples};  // samples that are kept, 9 or 5
+  float scale = 0.0f;              // of an r8 texel: the bound that its maximum's code stands for
+};
+
+/// Slots whose texels fill whole planes of the atlas: they are uploaded together.
+struct AtlasSlab {
+  int z = 0, thickness = 0;             // texels
+  size_t firstSlot = 0, slotCount = 0;  // in BrickLayout::slots
+};
+
 /// Where every brick goes.
 struct BrickLayout {
-  glm::ivec3 brickCount{0};     // as the volume's
-  glm::ivec3 places{1};         // size of the atlas in bricks, along each axis
-  std::vector<uint32_t> words;  // x fastest, as BrickVolume::index
-  std::vector<const float*>
-      bricks;                      // the 729 samples at each place, places in order x, y, z; the volume's own
+  Texel texel = Texel::r32f;
+  glm::ivec3 brickCount{0};       // as the volume's
+  glm::ivec3 size{1};             // of the atlas, texels
+  float maximum = 0.0f;           // no sample exceeds it; codes of maxima are shares of it
+  std::vector<glm::uvec2> words;  // x fastest, as BrickVolume::index
+  std::vector<BrickSlot> slots;   // in the order of their places
+  std::vector<AtlasSlab> slabs;
   glm::ivec3 blockCount{0};        // blocks of the light cache along each axis
   std::vector<glm::ivec3> blocks;  // those that hold a brick with density, x fastest
   glm::ivec3 blockPlaces{1};       // size of the cache's atlas in blocks, along each axis
   std::vector<uint32_t>
       blockWords;  // per block, x fastest: 0, or 1 + its place, 10 bits an axis; in order of `blocks`
+
+  /// Whether texels are shares of their brick's bound.
+  bool scaled() const { return texel == Texel::r8; }
 };
 
 /// What textures can hold, texels along an axis; 2048 is the least that OpenGL 4.5 promises.
 inline constexpr int kLeastTextureLimit = 2048;
 
+struct LayoutOptions {
+  Texel texel = Texel::r32f;
+  int limitTexels = kLeastTextureLimit;
+};
+
 /// Lays a volume, which must outlive the layout, out in an atlas of at most `limitTexels` an axis (and what a
-/// word can tell). Throws InputError where it has more bricks than that. An empty volume has one place and no
-/// words.
-BrickLayout layOut(const BrickVolume& volume, int limitTexels = kLeastTextureLimit);
+/// word can tell). A brick whose density lies in one half of it along an axis keeps that half. Throws
+/// InputError where the volume has more bricks than that. An empty volume has one texel and no words.
+BrickLayout layOut(const BrickVolume& volume, const LayoutOptions& options = {});
+
+/// Writes the texels of a slab, x fastest, size.x · size.y · thickness of them, of bytesOf(layout.texel)
+/// each; what no brick uses is 0.
+void writeSlab(const BrickLayout& layout, const AtlasSlab& slab, std::vector<std::byte>& texels);
+
+/// What a texture of such texels gives for each of them, without a brick's scale; `values` has room for all.
+void readTexels(Texel texel, const std::vector<std::byte>& texels, float* values);
 
 }  // namespace nephele

@@ -42,14 +42,22 @@ Viewer::Viewer(Filter filter, unsigned seed)
 }
 
 void Viewer::setVolume(std::shared_ptr<const BrickVolume> bricks) {
-  atlas_.reset();  // two volumes at once may be more than the GPU holds
+  seen_.reset();  // two volumes at once may be more than the GPU holds
+  const MarchSettings march = lanes_[0] ? lanes_[0]->request().view.scene.march : MarchSettings{};
   try {
-    atlas_.emplace(*bricks, filter_);
+    seen_.emplace(*bricks, filter_);
+    seen_->atlasFor(0, march);
   } catch (const std::exception&) {
-    if (bricks_) atlas_.emplace(*bricks_, filter_);
+    seen_.reset();
+    if (bricks_) seen_.emplace(*bricks_, filter_);
     throw;
   }
   bricks_ = std::move(bricks);
+}
+
+void Viewer::endSplit() {
+  lanes_[1].reset();
+  if (seen_) seen_->forget(1);
 }
 
 MarchPass& Viewer::passFor(View view) {
@@ -64,8 +72,9 @@ LaneTools Viewer::toolsFor(const Lane& lane) {
   if (lane.request().show == View::slice)
     pass.setSlice(lane.request().slice.axis, slicePlace(lane.request().slice, *bricks_));
   pass.setEnvironment(lane.request().view.environmentMap);
-  pass.useCache(lanes_[1] && &lane == &*lanes_[1] ? 1 : 0);
-  return {*bricks_, *atlas_, pass, seed_};
+  const size_t which = lanes_[1] && &lane == &*lanes_[1] ? 1 : 0;
+  pass.useCache(which);
+  return {*bricks_, seen_->atlasFor(which, lane.request().view.scene.march), pass, seed_};
 }
 
 void Viewer::restart(Side side, const LaneRequest& request) {
@@ -158,7 +167,7 @@ LaneStats Viewer::stats(Side side) const {
 }
 
 uint64_t Viewer::gpuBytes() const {
-  uint64_t bytes = atlas_ ? atlas_->gpuBytes() : 0;
+  uint64_t bytes = seen_ ? seen_->gpuBytes() : 0;
   for (const auto& pass : passes_) bytes += pass ? pass->gpuBytes() : 0;
   for (const auto& lane : lanes_) bytes += lane ? lane->gpuBytes() : 0;
   return bytes;

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "preview/app/lane.h"
+#include "preview/gpu/seen_volume.h"
 
 namespace nephele {
 
@@ -40,7 +41,7 @@ class Viewer {
 
   void restart(Side side, const LaneRequest& request);
   /// Forgets the kept side.
-  void endSplit() { lanes_[1].reset(); }
+  void endSplit();
   void setGoal(const RestGoal& goal) { goal_ = goal; }
   /// Draws for about `seconds`: first coarse pictures, then samples of the full ones. Returns whether there
   /// is more to draw. Throws InputError for settings that cannot be drawn.
@@ -66,7 +67,7 @@ class Viewer {
   unsigned seed_;
   RestGoal goal_;
   std::shared_ptr<const BrickVolume> bricks_;
-  std::optional<BrickAtlas> atlas_;
+  std::optional<SeenVolume> seen_;
   std::array<std::optional<MarchPass>, 3> passes_;  // by MarchWrites; compiled when first needed
   GlProgram display_;
   std::array<GlBuffer, kSideCount> displayParameters_;  // for rays to the sky

@@ -10,12 +10,29 @@
 namespace nephele {
 namespace {
 
+constexpr int kWordChannels = 2;
 constexpr GLuint kHeatUnit = 10;  // and the next, as shaders/heat.glsl declares them
 
 int volumeLimit() {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
   return limit;
+}
+
+struct Format {
+  GLenum sized, type;
+};
+
+Format formatOf(Texel texel) {
+  switch (texel) {
+    case Texel::r8:
+      return {GL_R8, GL_UNSIGNED_BYTE};
+    case Texel::r16f:
+      return {GL_R16F, GL_HALF_FLOAT};
+    case Texel::r32f:
+      break;
+  }
+  return {GL_R32F, GL_FLOAT};
 }
 
 uint64_t nextSerial() {
@@ -33,72 +50,72 @@ void setVolumeFilter(GLuint texture, Filter filter) {
     glTextureParameteri(texture, axis, GL_CLAMP_TO_EDGE);
 }
 
-GlTexture makeIndexTexture(std::span<const uint32_t> words, uint64_t& gpuBytes) {
+GlTexture makeIndexTexture(std::span<const uint32_t> words, int channels, uint64_t& gpuBytes) {
+  const size_t perTexel = static_cast<size_t>(channels), texels = words.size() / perTexel;
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
   const size_t most = std::bit_floor(static_cast<size_t>(limit));
   // Near a square, so that neither side meets the limit before it must.
   size_t width = 1;
-  while (width < most && width * width < words.size()) width *= 2;
-  const size_t height = std::max<size_t>(1, (words.size() + width - 1) / width);
+  while (width < most && width * width < texels) width *= 2;
+  const size_t height = std::max<size_t>(1, (texels + width - 1) / width);
   if (height > static_cast<size_t>(limit))
-    throw InputError({}, "an index of " + std::to_string(words.size()) +
-                             " bricks is more than the driver's textures hold");
+    throw InputError(
+        {}, "an index of " + std::to_string(texels) + " bricks is more than the driver's textures hold");
   GlTexture texture = makeTexture(GL_TEXTURE_2D);
-  glTextureStorage2D(texture.name(), 1, GL_R32UI, static_cast<GLsizei>(width), static_cast<GLsizei>(height));
+  glTextureStorage2D(texture.name(), 1, channels == 1 ? GL_R32UI : GL_RG32UI, static_cast<GLsizei>(width),
+                     static_cast<GLsizei>(height));
   glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  const size_t whole = words.size() / width, rest = words.size() % width;
+  const size_t whole = texels / width, rest = texels % width;
   const auto upload = [&](size_t y, size_t w, size_t h) {
     if (w * h > 0)
       glTextureSubImage2D(texture.name(), 0, 0, static_cast<GLint>(y), static_cast<GLsizei>(w),
-                          static_cast<GLsizei>(h), GL_RED_INTEGER, GL_UNSIGNED_INT, words.data() + y * width);
+                          static_cast<GLsizei>(h), channels == 1 ? GL_RED_INTEGER : GL_RG_INTEGER,
+                          GL_UNSIGNED_INT, words.data() + y * width * perTexel);
   };
   upload(0, width, whole);
   upload(whole, rest, 1);
   checkGl("uploading the index of bricks");
-  gpuBytes += sizeof(uint32_t) * width * height;
+  gpuBytes += sizeof(uint32_t) * perTexel * width * height;
   return texture;
 }
 
-BrickAtlas::BrickAtlas(const BrickVolume& bricks, Filter filter)
+BrickAtlas::BrickAtlas(const BrickVolume& bricks, Filter filter, Texel texel)
     : filter_(filter),
-      layout_(layOut(bricks, volumeLimit())),
+      layout_(layOut(bricks, {texel, volumeLimit()})),
       atlas_(makeTexture(GL_TEXTURE_3D)),
       serial_(nextSerial()) {
   setVolumeFilter(atlas_.name(), filter);
   uploadAtlas();
-  index_ = makeIndexTexture(layout_.words, gpuBytes_);
+  static_assert(sizeof(glm::uvec2) == kWordChannels * sizeof(uint32_t));
+  const std::span<const uint32_t> words(layout_.words.empty() ? nullptr : &layout_.words[0].x,
+                                        layout_.words.size() * kWordChannels);
+  index_ = makeIndexTexture(words, kWordChannels, gpuBytes_);
   if (bricks.temperature) {
-    heat_ = std::make_unique<BrickAtlas>(*bricks.temperature, filter);
+    heat_ = std::make_unique<BrickAtlas>(*bricks.temperature, filter, Texel::r32f);
     gpuBytes_ += heat_->gpuBytes();
   }
 }
 
 void BrickAtlas::uploadAtlas() {
-  const glm::ivec3 places = layout_.places, size = places * kBrickSamples;
-  glTextureStorage3D(atlas_.name(), 1, GL_R32F, size.x, size.y, size.z);
-  checkGl("making an atlas of " + std::to_string(layout_.bricks.size()) + " bricks");
-  gpuBytes_ += sizeof(float) * static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) *
+  const glm::ivec3 size = layout_.size;
+  const Format format = formatOf(layout_.texel);
+  glTextureStorage3D(atlas_.name(), 1, format.sized, size.x, size.y, size.z);
+  checkGl("making an atlas of " + std::to_string(layout_.slots.size()) + " bricks");
+  gpuBytes_ += bytesOf(layout_.texel) * static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) *
                static_cast<uint64_t>(size.z);
-  // One row of bricks at a time: few calls, and little memory beside the texture.
-  const size_t rowTexels = static_cast<size_t>(size.x);
-  std::vector<float> row(rowTexels * kBrickSamples * kBrickSamples);
-  const size_t perRow = static_cast<size_t>(places.x);
-  for (size_t first = 0; first < layout_.bricks.size(); first += perRow) {
-    const size_t last = std::min(first + perRow, layout_.bricks.size());
-    for (size_t place = first; place < last; ++place) {
-      const float* from = layout_.bricks[place];
-      float* to = row.data() + (place - first) * kBrickSamples;
-      for (int line = 0; line < kBrickSamples * kBrickSamples; ++line)
-        std::copy_n(from + line * kBrickSamples, kBrickSamples, to + static_cast<size_t>(line) * rowTexels);
-    }
-    const int number = static_cast<int>(first / perRow);
-    glTextureSubImage3D(atlas_.name(), 0, 0, number % places.y * kBrickSamples,
-                        number / places.y * kBrickSamples, size.x, kBrickSamples, kBrickSamples, GL_RED,
-                        GL_FLOAT, row.data());
+  // One slab of bricks at a time: few calls, and little memory beside the texture.
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  std::vector<std::byte> texels;
+  for (const AtlasSlab& slab : layout_.slabs) {
+    writeSlab(layout_, slab, texels);
+    glTextureSubImage3D(atlas_.name(), 0, 0, 0, slab.z, size.x, size.y, slab.thickness, GL_RED, format.type,
+                        texels.data());
   }
-  checkGl("uploading " + std::to_string(layout_.bricks.size()) + " bricks");
+  constexpr GLint kUsualAlignment = 4;
+  glPixelStorei(GL_UNPACK_ALIGNMENT, kUsualAlignment);
+  checkGl("uploading " + std::to_string(layout_.slots.size()) + " bricks");
 }
 
 void BrickAtlas::bind() const {

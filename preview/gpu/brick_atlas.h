@@ -1,4 +1,4 @@
-// The brick arrays on the GPU: an atlas of 9³ bricks and an index that says where each brick lies in it.
+// The brick arrays on the GPU: an atlas of bricks and an index that says where each brick lies in it.
 // Depends on volume/bricks.h, volume/brick_layout.h and gpu/gl.h.
 #pragma once
 
@@ -13,21 +13,21 @@
 
 namespace nephele {
 
-/// Makes a 2-D texture (R32UI) of words, one after the other in rows of a power of two, and adds its bytes.
-/// An index by 3-D textures would end where they do. Throws InputError where the driver's 2-D textures do not
-/// hold them.
-GlTexture makeIndexTexture(std::span<const uint32_t> words, uint64_t& gpuBytes);
+/// Makes a 2-D texture (R32UI, RG32UI) of texels of one or two words, one after the other in rows of a power
+/// of two, and adds its bytes. An index by 3-D textures would end where they do. Throws InputError where the
+/// driver's 2-D textures do not hold them.
+GlTexture makeIndexTexture(std::span<const uint32_t> words, int channels, uint64_t& gpuBytes);
 
 /// Sets how a 3-D texture is read between texels; beyond its faces it goes on as at them.
 void setVolumeFilter(GLuint texture, Filter filter);
 
-/// The volume laid out (volume/brick_layout.h) in two textures: a 3-D atlas (R32F) and the index's words.
+/// The volume laid out (volume/brick_layout.h) in two textures: a 3-D atlas and the index's words.
 class BrickAtlas {
  public:
-  /// Uploads all bricks and those of its temperatures, which must outlive it. Throws InputError where the
-  /// grid has more bricks than the driver's textures hold, and WorldError where the GPU's memory does not
-  /// suffice. An empty volume makes textures of one brick and one word.
-  BrickAtlas(const BrickVolume& bricks, Filter filter);
+  /// Uploads all bricks, their samples kept as `texel`, and those of its temperatures, which must outlive it.
+  /// Throws InputError where the grid has more bricks than the driver's textures hold, and WorldError where
+  /// the GPU's memory does not suffice. An empty volume makes textures of one brick and one word.
+  BrickAtlas(const BrickVolume& bricks, Filter filter, Texel texel);
 
   /// Binds the atlas to texture unit 0 and the index to unit 1; temperatures to units 10 and 11.
   void bind() const;

@@ -54,21 +54,26 @@ bool sameSky(MarchParameters a, MarchParameters b) {
 }  // namespace
 
 LightCache::LightCache(Filter filter, const std::vector<TextChange>& changes)
-    : floats_(filter == Filter::exact),
-      program_(buildComputeProgram("light_cache.comp",
-                                   {floats_ ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
-                                    floats_ ? "NPH_CACHE_FLOAT 1" : "NPH_CACHE_FLOAT 0"},
-                                   changes)),
-      cost_(makeBuffer()) {
+    : floats_(filter == Filter::exact), changes_(changes), cost_(makeBuffer()) {
   const uint32_t zero = 0;
   glNamedBufferStorage(cost_.name(), sizeof zero, &zero, GL_DYNAMIC_STORAGE_BIT);
+}
+
+void LightCache::build(bool scaled) {
+  GlProgram& program = programs_[scaled ? 1 : 0];
+  if (program.name() != 0) return;
+  program = buildComputeProgram(
+      "light_cache.comp",
+      {floats_ ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
+       floats_ ? "NPH_CACHE_FLOAT 1" : "NPH_CACHE_FLOAT 0", scaled ? "NPH_SCALED true" : "NPH_SCALED false"},
+      changes_);
 }
 
 void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameters) {
   const BrickLayout& layout = atlas.layout();
   gpuBytes_ = sizeof(uint32_t);
   blockTotal_ = static_cast<uint32_t>(layout.blocks.size());
-  blockIndex_ = makeIndexTexture(layout.blockWords, gpuBytes_);
+  blockIndex_ = makeIndexTexture(layout.blockWords, 1, gpuBytes_);
   std::vector<glm::ivec4> blocks;
   for (const glm::ivec3& block : layout.blocks) blocks.emplace_back(block, 0);
   blocks_ = makeBuffer();
@@ -116,7 +121,7 @@ void LightCache::findTasks(const MarchParameters& parameters) {
 
 void LightCache::fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) const {
   atlas.bind();
-  glUseProgram(program_.name());
+  glUseProgram(programs_[known_->counts.z != 0 ? 1 : 0].name());
   glBindTextureUnit(2, blockIndex_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kBlocksBinding, blocks_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kCostBinding, cost_.name());
@@ -142,6 +147,7 @@ bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& paramete
     atlasSerial_ = atlas.serial();
     seconds = std::numeric_limits<double>::infinity();  // it holds nothing that could be shown meanwhile
   }
+  build(parameters.counts.z != 0);
   findTasks(parameters);
   if (blockTotal_ == 0) tasks_.clear();
   known_ = parameters;

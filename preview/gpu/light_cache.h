@@ -2,6 +2,7 @@
 // lattice. Depends on shaders/shared, gpu/brick_atlas.h and gpu/shader.h.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -42,8 +43,11 @@ class LightCache {
   void findTasks(const shared::MarchParameters& parameters);
   void fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) const;
 
+  void build(bool scaled);
+
   bool floats_;
-  GlProgram program_;
+  std::vector<TextChange> changes_;
+  std::array<GlProgram, 2> programs_;  // by whether texels have a scale a brick; built when first needed
   GlTexture blockIndex_, columns_, sky_;
   GlBuffer blocks_, cost_;
   uint32_t blockTotal_ = 0;

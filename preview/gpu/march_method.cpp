@@ -10,6 +10,7 @@
 #include "preview/gpu/accumulator.h"
 #include "preview/gpu/camera_rays.h"
 #include "preview/gpu/egl_context.h"
+#include "preview/gpu/seen_volume.h"
 
 namespace nephele {
 namespace {
@@ -45,24 +46,25 @@ class MarchMethod : public Method {
   }
 
   void setVolume(const BrickVolume& bricks) override {
-    atlas_.reset();  // two volumes at once may be more than the GPU holds
-    atlas_.emplace(bricks, pass_->filter());
+    volume_.reset();  // two volumes at once may be more than the GPU holds
+    volume_.emplace(bricks, pass_->filter());
     bricks_ = &bricks;
   }
 
   Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
-    NEPHELE_CHECK_EQ(atlas_.has_value(), true);
+    NEPHELE_CHECK_EQ(volume_.has_value(), true);
+    const BrickAtlas& atlas = volume_->atlasFor(0, view.scene.march);
     const auto start = Clock::now();
     const Film film(request.width, request.height);
     pass_->setParameters(marchParameters(view, *bricks_, request.width, request.height, request.seed, true));
     pass_->setEnvironment(view.environmentMap);
-    pass_->prepare(*atlas_, std::numeric_limits<double>::infinity());
+    pass_->prepare(atlas, std::numeric_limits<double>::infinity());
     const double cacheDensities = pass_->takeCacheDensities();
     Accumulator accumulator(request.width, request.height, request.samples, request.seed);
     {
       Progress progress("rendering", accumulator.pixelsTotal(), request.quiet);
       for (uint64_t before = 0; !accumulator.done();) {
-        accumulator.advance(*pass_, *atlas_, film, kProgressSeconds);
+        accumulator.advance(*pass_, atlas, film, kProgressSeconds);
         progress.advance(accumulator.pixelsDone() - before);
         before = accumulator.pixelsDone();
       }
@@ -72,14 +74,16 @@ class MarchMethod : public Method {
     cost.milliseconds = secondsSince(start) * 1e3;
     cost.densitySamplesPerPixel =
         (result.densitySamples + cacheDensities) / (static_cast<double>(request.width) * request.height);
-    cost.gpuBytes = atlas_->gpuBytes() + film.gpuBytes() + pass_->gpuBytes();
+    cost.gpuBytes = volume_->gpuBytes() + film.gpuBytes() + pass_->gpuBytes();
+    cost.volumeBytes = volume_->gpuBytes() + pass_->gpuBytes();
+    cost.texel = std::string(nameOf(atlas.layout().texel));
     return std::move(result.picture);
   }
 
  private:
   std::optional<EglContext> context_;  // first, so that it goes last
   std::optional<MarchPass> pass_;
-  std::optional<BrickAtlas> atlas_;
+  std::optional<SeenVolume> volume_;
   const BrickVolume* bricks_ = nullptr;
 };
 

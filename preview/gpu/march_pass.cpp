@@ -27,6 +27,7 @@ std::vector<std::string> definesFor(Filter filter, MarchWrites writes, const sha
           flag("NPH_POINTS", points),
           flag("NPH_POWDER", p.powder.x > 0.0f),
           flag("NPH_LOBES", p.phase.z > 0.0f),
+          flag("NPH_SCALED", p.counts.z != 0),
           p.emission.x > 0.0f ? "NPH_HEAT 1" : "NPH_HEAT 0",
           "NPH_SKY " + std::to_string(sky)};
 }
@@ -70,9 +71,7 @@ void MarchPass::setParameters(const shared::MarchParameters& parameters) {
 }
 
 bool MarchPass::prepare(const BrickAtlas& atlas, double seconds) {
-  const BrickLayout& layout = atlas.layout();
-  parameters_.blockCount = glm::ivec4(layout.blockCount, 0);
-  parameters_.cacheShape.z = layout.blockPlaces.z * parameters_.cacheShape.x;
+  shared::describeLayout(parameters_, atlas.layout());
   glNamedBufferSubData(buffer_.name(), 0, sizeof parameters_, &parameters_);
   glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, buffer_.name());
   preparedFor_ = atlas.serial();

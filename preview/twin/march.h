@@ -14,11 +14,13 @@ struct SkyArrays {
 };
 
 /// `Source` has
-///   uint word(ivec3 brick) const                      as volume/brick_layout.h says
-///   float density(uint word, vec3 position) const     position in [0, 8] voxels from the brick's corner
+///   uvec2 word(ivec3 brick) const                     as volume/brick_layout.h says
+///   float density(uvec2 word, vec3 kept, ivec3 samples) const     of the `samples` that the brick keeps,
+///   from the
+///                                                     first, without its scale
 ///   uint block(ivec3 block) const, float column(vec3 texel) const, vec4 sky(int part, vec3 texel) const
 ///                                                     asked where parameters.cache or cacheShape say so
-///   uint heatWord(ivec3 brick) const, float heatValue(uint word, vec3 position) const
+///   uvec2 heatWord(ivec3 brick) const, float heatValue(uvec2 word, vec3 kept, ivec3 samples) const
 ///                                                     the same of temperatures, where parameters.emission is
 ///                                                     on
 /// Thread-safe to copy and use where Source is.
@@ -28,16 +30,21 @@ struct March {
   const Source* bricks;
   SkyArrays skyArrays{};
 
-  uint brickWord(ivec3 brick) const { return bricks->word(brick); }
-  float brickDensity(uint word, vec3 position) const { return bricks->density(word, position); }
+  uvec2 brickWord(ivec3 brick) const { return bricks->word(brick); }
+  float brickDensity(uvec2 word, vec3 position) {
+    const float kept = bricks->density(word, keptPosition(word, position), wordSamples(word));
+    return params.counts.z != 0 ? kept * wordMaximum(word) : kept;
+  }
   uint blockWord(ivec3 block) const { return bricks->block(block); }
   float cachedColumn(vec3 texel) const { return bricks->column(texel); }
   vec4 cachedSky(int part, vec3 texel) const { return bricks->sky(part, texel); }
   vec3 environmentTexel(ivec2 texel) const { return skyArrays.texels[texel.y * params.skySize.x + texel.x]; }
   vec4 environmentCell(int cell) const { return skyArrays.cells[cell]; }
 
-  uint heatWord(ivec3 brick) const { return bricks->heatWord(brick); }
-  float heatValue(uint word, vec3 position) const { return bricks->heatValue(word, position); }
+  uvec2 heatWord(ivec3 brick) const { return bricks->heatWord(brick); }
+  float heatValue(uvec2 word, vec3 position) {
+    return bricks->heatValue(word, keptPosition(word, position), wordSamples(word));
+  }
 
 #define NPH_EMISSION (params.emission.x > 0.0f)
 #define NPH_CACHED (params.cache.x > 0.0f)
@@ -67,8 +74,8 @@ struct NoCache {
   uint block(ivec3) const { return 0u; }
   float column(vec3) const { return 0.0f; }
   vec4 sky(int, vec3) const { return vec4(0.0f); }
-  uint heatWord(ivec3) const { return 0u; }
-  float heatValue(uint, vec3) const { return 0.0f; }
+  uvec2 heatWord(ivec3) const { return uvec2(0u); }
+  float heatValue(uvec2, vec3, ivec3) const { return 0.0f; }
 };
 
 }  // namespace nephele::shared

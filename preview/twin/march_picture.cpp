@@ -46,30 +46,45 @@ struct Volume {
   }
 };
 
-/// A sample of a layout's bricks. A position a hair outside the brick reads on along its outermost cell.
-float brickValue(const BrickLayout& layout, uint word, const vec3& position) {
-  const ivec3 cell = clamp(ivec3(floor(position)), ivec3(0), ivec3(kBrickCells - 1));
-  const float* brick = layout.bricks[flat(layout.places, brick_word::place(word))];
-  const auto at = [brick](const ivec3& p) { return brick[flat(ivec3(kBrickSamples), p)]; };
-  return max(0.0f, mixed(at, cell, position - vec3(cell)));
+/// The atlas as the GPU would read it, without the bricks' scales.
+Volume<float> atlasOf(const BrickLayout& layout) {
+  Volume<float> atlas;
+  atlas.make(layout.size);
+  std::vector<std::byte> texels;
+  float* to = atlas.texels.data();
+  for (const AtlasSlab& slab : layout.slabs) {
+    writeSlab(layout, slab, texels);
+    const size_t count = texels.size() / bytesOf(layout.texel);
+    readTexels(layout.texel, texels, to);
+    to += count;
+  }
+  return atlas;
 }
 
 struct ArraySource {
   const BrickLayout* layout;
-  const BrickLayout* heat;  // of the temperatures, or nullptr
+  const BrickLayout* heat;  // of the temperatures
+  Volume<float> atlas, heatAtlas;
   Volume<float> columns;
   Volume<vec4> skies;
 
-  uint word(ivec3 brick) const { return layout->words[flat(layout->brickCount, brick)]; }
+  uvec2 word(ivec3 brick) const { return layout->words[flat(layout->brickCount, brick)]; }
   uint block(ivec3 block) const { return layout->blockWords[flat(layout->blockCount, block)]; }
   float column(vec3 texel) const { return columns.read(texel); }
   vec4 sky(int part, vec3 texel) const {
     return skies.read(texel + vec3(0.0f, 0.0f, static_cast<float>(part * (skies.size.z / 2))));
   }
 
-  float density(uint word, vec3 position) const { return brickValue(*layout, word, position); }
-  uint heatWord(ivec3 brick) const { return heat->words[flat(heat->brickCount, brick)]; }
-  float heatValue(uint word, vec3 position) const { return brickValue(*heat, word, position); }
+  float density(uvec2 word, vec3 kept, ivec3 samples) const { return value(atlas, word, kept, samples); }
+  float heatValue(uvec2 word, vec3 kept, ivec3 samples) const {
+    return value(heatAtlas, word, kept, samples);
+  }
+  float value(const Volume<float>& in, uvec2 word, vec3 kept, ivec3 samples) const {
+    const ivec3 cell = min(ivec3(kept), samples - 2), corner = brick_word::corner(word);
+    return mixed([&](const ivec3& p) { return in.texels[flat(in.size, p)]; }, corner + cell,
+                 kept - vec3(cell));
+  }
+  uvec2 heatWord(ivec3 brick) const { return heat->words[flat(heat->brickCount, brick)]; }
 };
 
 /// What shaders/light_cache.comp fills for the exact filter.
@@ -110,15 +125,15 @@ void fillCache(ArraySource& source, const March<ArraySource>& march) {
 }  // namespace
 
 std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const MarchParameters& parameters, int width,
-                                    int height, glm::vec2 subPixel, unsigned number, const SkyArrays& sky) {
+                                    int height, glm::vec2 subPixel, unsigned number, const SkyArrays& sky,
+                                    Texel texel) {
   std::vector<TwinPixel> pixels(static_cast<size_t>(width) * static_cast<size_t>(height));
   if (bricks.empty() && parameters.skyForward.w <= 0.0f) return pixels;
-  const BrickLayout layout = layOut(bricks);
+  const BrickLayout layout = layOut(bricks, {texel});
   const BrickLayout heat = bricks.temperature ? layOut(*bricks.temperature) : BrickLayout{};
-  ArraySource source{&layout, &heat, {}, {}};
+  ArraySource source{&layout, &heat, atlasOf(layout), atlasOf(heat), {}, {}};
   March<ArraySource> whole{parameters, &source, sky};
-  whole.params.blockCount = ivec4(layout.blockCount, 0);
-  whole.params.cacheShape.z = layout.blockPlaces.z * parameters.cacheShape.x;
+  describeLayout(whole.params, layout);
   fillCache(source, whole);
   const std::vector<float> jitter = blueNoiseTile(kJitterTile);
   tbb::parallel_for(tbb::blocked_range<int>(0, height), [&](const tbb::blocked_range<int>& rows) {

@@ -14,6 +14,6 @@
 namespace nephele::shared {
 using glm::abs, glm::ceil, glm::clamp, glm::cross, glm::dot, glm::exp, glm::exp2, glm::floor, glm::length,
     glm::max, glm::min, glm::mix, glm::normalize, glm::sqrt, glm::cos, glm::sin, glm::log, glm::pow;
-using glm::bvec3, glm::ivec2, glm::ivec3, glm::ivec4, glm::uint, glm::vec2, glm::vec3, glm::vec4;
+using glm::bvec3, glm::ivec2, glm::ivec3, glm::ivec4, glm::uint, glm::uvec2, glm::vec2, glm::vec3, glm::vec4;
 using glm::uintBitsToFloat;
 }  // namespace nephele::shared

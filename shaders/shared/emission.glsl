@@ -1,7 +1,7 @@
 // Thermal emission from a grid of temperatures [MODEL.md, section 2]. Included as walk.glsl is, after it; GLSL's scope or the
 // struct provides
-//   uint heatWord(ivec3 brick);                  of the temperatures' own index: see volume/brick_layout.h
-//   float heatValue(uint word, vec3 position);   trilinear; position in [0, 8] from the brick's corner, in its voxels
+//   uvec2 heatWord(ivec3 brick);                  of the temperatures' own index: see volume/brick_layout.h
+//   float heatValue(uvec2 word, vec3 position);   trilinear; position in [0, 8] from the brick's corner, in its voxels
 
 // Below, nothing that is seen is emitted: scene/blackbody.h. The table runs evenly over √(this / T), from 0 to 1.
 NPH_CONST float kColdestKelvin = 500.0f;
@@ -28,7 +28,7 @@ NPH_FN float temperatureAt(vec3 position) {
   if (brick.x < 0 || brick.y < 0 || brick.z < 0 || brick.x >= params.heatCount.x || brick.y >= params.heatCount.y ||
       brick.z >= params.heatCount.z)
     return 0.0f;
-  uint word = heatWord(brick);
+  uvec2 word = heatWord(brick);
   if (wordIsEmpty(word)) return 0.0f;
   int edge = wordEdge(word);
   return heatValue(word, (p - cubeCorner(brick, edge)) / float(edge));

@@ -34,4 +34,13 @@ inline constexpr size_t kRowsBehindLights = 5 + kBlackbodyNodes;
 static_assert(sizeof(MarchParameters) ==
               (kRowsBeforeLights + kRowsPerLight * kMaxLights + kRowsBehindLights) * kRowBytes);
 
+/// What the march is told of where bricks lie; `Layout` is nephele::BrickLayout.
+template <class Layout>
+void describeLayout(MarchParameters& p, const Layout& layout) {
+  p.walk.y = layout.maximum;
+  p.counts.z = layout.scaled() ? 1 : 0;
+  p.blockCount = ivec4(layout.blockCount, 0);
+  p.cacheShape.z = layout.blockPlaces.z * p.cacheShape.x;
+}
+
 }  // namespace nephele::shared

@@ -18,7 +18,7 @@ struct MarchResult {
 
 // Length of a step inside a brick, world units; `shortest` is that of the setting. Longer where what the step may take of the
 // view stays small, and small too what it may vary by: `left` of the view is there to be taken.
-NPH_FN float stepIn(uint word, float shortest, float left) {
+NPH_FN float stepIn(uvec2 word, float shortest, float left) {
   if (params.walk.z <= 0.0f) return shortest;
   // Of the view a world unit, at most.
   float taken = left * max(params.sigmaT.x, max(params.sigmaT.y, params.sigmaT.z)) * wordMaximum(word);
@@ -55,7 +55,7 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
   float margin = params.walk.x * voxel;
   float enough = columnThatHides(params.environment.w);
   uint lit = 0u;
-  uint word = 0u;  // of the brick that the ray is in
+  uvec2 word = uvec2(0u);  // of the brick that the ray is in
   vec3 corner = vec3(0.0f);
   float size = 1.0f;   // of its voxels, in those of the index
   float tEnd = tNear;  // where the ray leaves it
@@ -70,7 +70,7 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
       // A brick is the one that the ray is in a hair further on, so that rounding never holds it on a face.
       vec3 position = origin + (t + margin) * direction;
       ivec3 brick = ivec3(floor(position / kBrickEdge));
-      word = isOutside(brick) ? 0u : brickWord(brick);
+      word = isOutside(brick) ? uvec2(0u) : brickWord(brick);
       int edge = wordEdge(word);
       corner = cubeCorner(brick, edge);
       size = float(edge);

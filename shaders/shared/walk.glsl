@@ -1,25 +1,36 @@
 // Ways through the bricks: what a word of the index says, density at a point, columns of density along a line. Included at
 // GLSL's global scope, and in C++ inside a struct, which provide
 //   MarchParameters params;
-//   uint brickWord(ivec3 brick);                    of a brick inside the index: see volume/brick_layout.h
-//   float brickDensity(uint word, vec3 position);   trilinear; position in [0, 8] from the brick's corner, in its voxels
+//   uvec2 brickWord(ivec3 brick);                    of a brick inside the index: see volume/brick_layout.h
+//   float brickDensity(uvec2 word, vec3 position);   trilinear; position in [0, 8] from the brick's corner, in its voxels
 
 NPH_CONST float kBrickEdge = 8.0f;
-NPH_CONST int kMostCode = 31;
 
-NPH_FN bool wordIsEmpty(uint word) { return word < 0x08000000u; }
+NPH_FN bool wordIsEmpty(uvec2 word) { return (word.x >> 24u) == 0u; }
 
-// No sample of the brick exceeds this.
-NPH_FN float wordMaximum(uint word) { return params.walk.y * exp2(0.5f * float(int(word >> 27u) - kMostCode)); }
+// No sample of the brick exceeds this: a code of volume/brick_bounds.h.
+NPH_FN float wordMaximum(uvec2 word) { return params.walk.y * uintBitsToFloat(((word.x >> 24u) << 20u) + 0x30000000u); }
 
 // The share of the brick's maximum that no sample falls below.
-NPH_FN float wordMinimumShare(uint word) {
-  uint code = (word >> 25u) & 3u;
-  return code == 0u ? 0.0f : (code == 1u ? 0.5f : (code == 2u ? 0.875f : 1.0f));
-}
+NPH_FN float wordMinimumShare(uvec2 word) { return float(word.y >> 24u) * (1.0f / 255.0f); }
 
 // Edge of the cube that a word speaks of, bricks: of the empty cube, or of the brick at its level.
-NPH_FN int wordEdge(uint word) { return 1 << int(wordIsEmpty(word) ? word : (word >> 23u) & 3u); }
+NPH_FN int wordEdge(uvec2 word) { return 1 << int(wordIsEmpty(word) ? word.y : (word.y >> 18u) & 7u); }
+
+// First texel of the brick in the atlas, and texels along each axis.
+NPH_FN ivec3 wordCorner(uvec2 word) {
+  return ivec3(int(word.x & 4095u), int((word.x >> 12u) & 4095u), int(word.y & 4095u));
+}
+NPH_FN ivec3 wordSamples(uvec2 word) {
+  return ivec3(9) - 4 * ivec3(int((word.y >> 12u) & 1u), int((word.y >> 13u) & 1u), int((word.y >> 14u) & 1u));
+}
+
+// A position in the brick from the first sample that is kept, in voxels. Beyond those that are kept the density is that of the
+// outermost, which is 0, or at most a hair away.
+NPH_FN vec3 keptPosition(uvec2 word, vec3 position) {
+  vec3 first = 4.0f * vec3(float((word.y >> 15u) & 1u), float((word.y >> 16u) & 1u), float((word.y >> 17u) & 1u));
+  return clamp(position - first, vec3(0.0f), vec3(wordSamples(word) - 1));
+}
 
 NPH_FN bool isOutside(ivec3 brick) {
   return brick.x < 0 || brick.y < 0 || brick.z < 0 || brick.x >= params.brickCount.x || brick.y >= params.brickCount.y ||
@@ -48,7 +59,7 @@ NPH_FN float densityAndExit(vec3 position, vec3 stride, NPH_OUT(float) toExit) {
   toExit = 0.0f;
   // Rounding may place an end of the ray a hair outside the box, where the density is 0.
   if (isOutside(brick)) return 0.0f;
-  uint word = brickWord(brick);
+  uvec2 word = brickWord(brick);
   int edge = wordEdge(word);
   vec3 corner = cubeCorner(brick, edge);
   if (!wordIsEmpty(word)) return brickDensity(word, (position - corner) / float(edge));

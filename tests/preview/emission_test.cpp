@@ -47,8 +47,8 @@ ViewedScene viewOf(const BrickVolume& bricks) {
 TEST(SharedEmission, TableIsPlancksLaw) {
   const BrickVolume bricks = cube(1.0f);
   struct Source : shared::NoCache {
-    glm::uint word(glm::ivec3) const { return 0u; }
-    float density(glm::uint, glm::vec3) const { return 0.0f; }
+    glm::uvec2 word(glm::ivec3) const { return glm::uvec2(0u); }
+    float density(glm::uvec2, glm::vec3, glm::ivec3) const { return 0.0f; }
   };
   shared::March<Source> march{};
   setLightParameters(march.params, viewOf(bricks), bricks);

@@ -23,8 +23,8 @@ inline void needContext() { static EglContext context; }
 
 /// One sample of each pixel through its place `subPixel`.
 inline FilmPicture marchOnGpu(MarchPass& pass, const BrickVolume& bricks, int width, int height,
-                              glm::vec2 subPixel, unsigned number) {
-  const BrickAtlas atlas(bricks, pass.filter());
+                              glm::vec2 subPixel, unsigned number, Texel texel = Texel::r32f) {
+  const BrickAtlas atlas(bricks, pass.filter(), texel);
   const Film film(width, height);
   pass.draw(atlas, film, subPixel, number, {0, 0, width, height});
   return film.read();

@@ -86,11 +86,11 @@ const ParityCase& parityCase(Lit lit) {
   return cases[static_cast<size_t>(lit)];
 }
 
-std::vector<TwinPixel> marchOnCpu(const ParityCase& on, unsigned number) {
+std::vector<TwinPixel> marchOnCpu(const ParityCase& on, unsigned number, Texel texel = Texel::r32f) {
   shared::SkyArrays sky;
   if (on.view.environmentMap)
     sky = {on.view.environmentMap->texels.data(), on.view.environmentMap->cells.data()};
-  return marchPicture(on.bricks, on.parameters, kWidth, kHeight, kSubPixel, number, sky);
+  return marchPicture(on.bricks, on.parameters, kWidth, kHeight, kSubPixel, number, sky, texel);
 }
 
 const std::vector<TwinPixel>& twinPicture(Lit lit) {
@@ -116,15 +116,18 @@ struct ParityError {
 };
 
 /// Over the pixels that see the medium on either side: empty ones agree trivially.
-ParityError parityOf(Lit lit, const std::vector<TextChange>& changes) {
+ParityError parityOf(Lit lit, const std::vector<TextChange>& changes, Texel texel = Texel::r32f) {
   needContext();
   MarchPass pass(Filter::exact, changes);
   pass.setParameters(parityCase(lit).parameters);
   pass.setEnvironment(parityCase(lit).view.environmentMap);
-  const Picture gpu = marchOnGpu(pass, parityCase(lit).bricks, kWidth, kHeight, kSubPixel, kNumber).picture;
+  const Picture gpu =
+      marchOnGpu(pass, parityCase(lit).bricks, kWidth, kHeight, kSubPixel, kNumber, texel).picture;
+  const std::vector<TwinPixel> twins =
+      texel == Texel::r32f ? twinPicture(lit) : marchOnCpu(parityCase(lit), kNumber, texel);
   std::vector<double> a[2], b[2];
-  for (size_t i = 0; i < twinPicture(lit).size(); ++i) {
-    const TwinPixel& twin = twinPicture(lit)[i];
+  for (size_t i = 0; i < twins.size(); ++i) {
+    const TwinPixel& twin = twins[i];
     if (twin.transmittance.x == 1.0f && gpu.planes[4][i] == 1.0f) continue;
     for (int c = 0; c < 3; ++c) {
       const size_t plane = static_cast<size_t>(c);
@@ -145,6 +148,49 @@ TEST(GlParity, CpuAndGpuAgree) {
                 error.radiance, error.transmittance);
     EXPECT_LE(error.radiance, kGate);
     EXPECT_LE(error.transmittance, kGate);
+  }
+}
+
+TEST(GlParity, CpuAndGpuAgreeOnWhatSmallerTexelsHold) {
+  for (const Texel texel : {Texel::r8, Texel::r16f})
+    for (const Lit lit : {Lit::plain, Lit::cached}) {
+      const ParityError error = parityOf(lit, {}, texel);
+      EXPECT_LE(std::max(error.radiance, error.transmittance), kGate) << nameOf(texel);
+    }
+  // A picture of floats is not one of bytes, and a brick's bound is what its bytes are shares of.
+  const TextChange unscaled{"bricks.glsl", "NPH_SCALED ? wordMaximum(word) : 1.0",
+                            "NPH_SCALED ? params.walk.y : 1.0"};
+  EXPECT_GT(parityOf(Lit::plain, {unscaled}, Texel::r8).transmittance, kGate);
+}
+
+TEST(GlParity, SmallerTexelsErrByNoMoreThanTheyPromise) {
+  needContext();
+  const ParityCase& on = parityCase(Lit::cached);
+  MarchPass pass(Filter::exact);
+  ViewedScene view = on.view;
+  view.scene.march.adaptive = false;  // steps follow bounds, which smaller texels change as well
+  pass.setParameters(marchParameters(view, on.bricks, kWidth, kHeight, 7, true));
+  const auto render = [&](Texel texel) {
+    return marchOnGpu(pass, on.bricks, kWidth, kHeight, kSubPixel, kNumber, texel).picture;
+  };
+  const Picture floats = render(Texel::r32f);
+  double deepest = 0.0;
+  constexpr size_t kTransmittance = 4;
+  for (const float t : floats.planes[kTransmittance]) deepest = std::max(deepest, -std::log(double{t}));
+  for (const Texel texel : {Texel::r8, Texel::r16f}) {
+    const Picture picture = render(texel);
+    const Comparison error = comparePictures(picture, "kept", floats, "floats");
+    double worst = 0.0;
+    for (size_t i = 0; i < floats.planes[kTransmittance].size(); ++i)
+      worst = std::max(worst, std::abs(std::log(double{floats.planes[kTransmittance][i]} /
+                                                double{picture.planes[kTransmittance][i]})));
+    const double bound = texelError(on.bricks, texel);
+    std::printf(
+        "%s: relative RMSE %.3g to floats; optical depth errs by %.3g of the deepest, the bound is %.3g\n",
+        std::string(nameOf(texel)).c_str(), error.relativeRmse, worst / deepest, bound);
+    EXPECT_LT(worst, bound * deepest);
+    EXPECT_GT(worst, 0.0);
+    EXPECT_LT(error.relativeRmse, texel == Texel::r8 ? 5e-3 : 1e-3);
   }
 }
 
@@ -221,10 +267,9 @@ TEST(GlParity, EachMutantBreaksTheGate) {
         "2.0f * environmentRadiance(l.toLight) / density"}},
       {"series x/2 -> 0.4 x", {"shared/step_integral.glsl", "x * (0.5f -", "x * (0.4f -"}},
       {"a hundredth of a voxel off",
-       {"bricks.glsl", "atlasCorner(word) + cell, position - vec3(cell)",
-        "atlasCorner(word) + cell, position - vec3(cell) + 0.01"}},
-      {"a brick's bound half as large",
-       {walk, "0.5f * float(int(word >> 27u)", "0.5f * float(-2 + int(word >> 27u)"}},
+       {"bricks.glsl", "wordCorner(word) + cell, kept - vec3(cell)",
+        "wordCorner(word) + cell, kept - vec3(cell) + 0.01"}},
+      {"a brick's bound half as large", {walk, "+ 0x30000000u", "+ 0x2f800000u"}},
       {"steps start alike", {march, "number * 2654435769u", "0u"}},
       {"cached columns 1% longer",
        {fill, "exp(-params.cache.y *", "exp(-1.01f * params.cache.y *"},

@@ -101,7 +101,7 @@ TEST(GlAccumulator, PiecesMakeUpOneMeanOfSamples) {
   view.medium = {{0.3, 0.3, 0.3}, {0.0, 0.0, 0.0}, 0.5};
   MarchPass pass(Filter::exact);
   pass.setParameters(marchParameters(view, bricks, kWidth, kHeight, kSeed, true));
-  const BrickAtlas atlas(bricks, Filter::exact);
+  const BrickAtlas atlas(bricks, Filter::exact, Texel::r32f);
   const Film pieces(kWidth, kHeight), whole(kWidth, kHeight);
   Accumulator accumulator(kWidth, kHeight, kSamples, kSeed);
   while (accumulator.advance(pass, atlas, pieces, 0.0))

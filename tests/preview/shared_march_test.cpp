@@ -9,12 +9,12 @@
 namespace nephele::shared {
 namespace {
 
-constexpr int kMostWord = 31;  // a brick whose samples reach the volume's maximum
+constexpr uint kMostWord = 248;  // a brick whose samples reach the volume's maximum
 
 /// Density 1 everywhere.
 struct FullBricks : NoCache {
-  uint word(ivec3) const { return uint(kMostWord) << 27u; }
-  float density(uint, vec3) const { return 1.0f; }
+  uvec2 word(ivec3) const { return uvec2(kMostWord << 24u, 0u); }
+  float density(uvec2, vec3, ivec3) const { return 1.0f; }
 };
 
 /// Looks along +x from outside; the medium fills [left, right] in x.

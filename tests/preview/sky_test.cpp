@@ -15,12 +15,12 @@ namespace {
 constexpr double kPiDouble = std::numbers::pi;
 
 struct NoBricks : NoCache {
-  uint word(ivec3) const { return 0u; }
-  float density(uint, vec3) const { return 0.0f; }
+  uvec2 word(ivec3) const { return uvec2(0u); }
+  float density(uvec2, vec3, ivec3) const { return 0.0f; }
 };
 struct FullBricks : NoCache {
-  uint word(ivec3) const { return 0xf8000000u; }
-  float density(uint, vec3) const { return 1.0f; }
+  uvec2 word(ivec3) const { return uvec2(0xf8000000u, 0u); }
+  float density(uvec2, vec3, ivec3) const { return 1.0f; }
 };
 
 ViewedScene rampView(double cloudiness, const glm::dvec3& up) {
