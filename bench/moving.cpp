@@ -19,6 +19,7 @@
 #include "preview/gpu/camera_rays.h"
 #include "preview/gpu/egl_context.h"
 #include "preview/gpu/moving.h"
+#include "preview/gpu/seen_volume.h"
 #include "preview/measure/compare.h"
 #include "preview/resolve.h"
 
@@ -120,7 +121,7 @@ class Bench {
     ViewedScene coarse = view_;
     coarse.scene.march = movingMarch(coarse.scene.march);
     MarchPass pass(Filter::hardware);
-    const BrickAtlas atlas(*bricks_, Filter::hardware);
+    const BrickAtlas atlas(*bricks_, Filter::hardware, texelFor(coarse.scene.march.precision, *bricks_));
     constexpr int kHalfWidth = kWidth / 2, kHalfHeight = kHeight / 2, kTries = 12;
     Film film(kHalfWidth, kHalfHeight);
     pass.setEnvironment(view_.environmentMap);

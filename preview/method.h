@@ -29,14 +29,22 @@ struct PictureRequest {
   unsigned samples = 4;  // a pixel
   unsigned seed = 0;
   bool quiet = false;  // no progress bar
+  /// Only every stride-th pixel of the picture, from the one at stride/2 on, along each axis: the result has
+  /// strided(width, stride) × strided(height, stride) of them, each as wide as in the whole picture. From 1
+  /// to the shorter edge.
+  int stride = 1;
   // The rest is for methods that know truth (`reference`).
   std::optional<int> bounces{};  // scatterings after the first; none: all
   double error = 0.0;            // above 0: samples until the picture's noise is at most this relative RMSE
 };
 
+/// Pixels that a stride leaves of `length`.
+constexpr int strided(int length, int stride) { return (length - stride / 2 + stride - 1) / stride; }
+
 /// What a picture cost.
 struct PictureCost {
   double milliseconds = 0.0;            // from the first draw to the last pixel read back
+  double millisecondsPreparing = 0.0;   // of these, what does not grow with pixels and samples
   double densitySamplesPerPixel = 0.0;  // densities read for the whole picture / pixels
   uint64_t gpuBytes = 0;                // bricks, index, light cache, picture, parameters
   uint64_t volumeBytes = 0;             // the same without the picture

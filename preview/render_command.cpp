@@ -14,6 +14,7 @@
 #include "base/files.h"
 #include "preview/behind.h"
 #include "preview/measure/compare.h"
+#include "preview/measure/error_request.h"
 #include "preview/method.h"
 #include "preview/resolve.h"
 #include "preview/temperature.h"
@@ -25,7 +26,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::string_view kReferenceMethod = "reference";
+constexpr std::string_view kReferenceMethod = "reference", kMarchMethod = "march";
+constexpr double kPercent = 100.0;
 constexpr size_t kColourPlanes = 4;  // R, G, B, A come first
 
 double secondsSince(Clock::time_point start) {
@@ -60,20 +62,54 @@ void checkOptions(const RenderOptions& options) {
   if (options.samples == 0u) complaints.add({}, "--spp should be at least 1");
   if (options.frames && options.frames->first > options.frames->second)
     complaints.add({}, "--frames: the first frame is after the last");
-  if (options.bounces && options.method != kReferenceMethod)
-    complaints.add({},
-                   "--bounces needs --method reference; the march takes its orders from the scene's octaves");
-  if (options.error > 0.0 && options.method != kReferenceMethod)
-    complaints.add({}, "--error needs --method reference; other methods do not know their error yet");
+  const bool chooses = options.error > 0.0 && options.method != kReferenceMethod;
+  if (options.bounces && options.method != kReferenceMethod && !chooses)
+    complaints.add(
+        {},
+        "--bounces needs --method reference or --error; the march takes its orders from the scene's "
+        "octaves");
+  if (chooses && options.method != kMarchMethod)
+    complaints.add({}, "--error chooses between the march and the reference; it does not take --method " +
+                           options.method);
+  if (chooses && (options.samples || options.stepVoxels))
+    complaints.add({}, "--error chooses steps and samples itself; leave out --step and --spp");
   complaints.throwIfAny();
 }
+
+/// What --error chose and then found, for the last frame.
+struct ErrorReport {
+  ErrorPick pick;
+  NoisyError measured;
+  double secondsChoosing = 0.0, secondsMeasuring = 0.0;
+  size_t waysMeasured = 0;
+  int stride = 1;
+  std::optional<int> bounces;
+};
 
 /// Sums over frames, for --stats.
 struct Totals {
   int frames = 0;
   double secondsLoad = 0.0;
   PictureCost cost;
+  std::optional<ErrorReport> error;
 };
+
+nlohmann::ordered_json jsonOf(const ErrorReport& report, double asked) {
+  nlohmann::ordered_json json{{"asked", asked},
+                              {"method", report.pick.setting.method},
+                              {"setting", report.pick.setting.name},
+                              {"expected", report.pick.error},
+                              {"expected_ms", report.pick.milliseconds},
+                              {"measured", report.measured.relativeRmse},
+                              {"low95", report.measured.low},
+                              {"high95", report.measured.high},
+                              {"every_pixel_of", report.stride},
+                              {"seconds_choosing", report.secondsChoosing},
+                              {"seconds_measuring", report.secondsMeasuring},
+                              {"ways_measured", report.waysMeasured}};
+  json["bounces"] = report.bounces ? nlohmann::ordered_json(*report.bounces) : nlohmann::ordered_json("all");
+  return json;
+}
 
 std::vector<std::string> unphysicalTerms(const LightModel& light) {
   std::vector<std::string> names;
@@ -82,22 +118,23 @@ std::vector<std::string> unphysicalTerms(const LightModel& light) {
   return names;
 }
 
-void writeStats(const std::string& path, const Totals& totals, const Method& method,
-                const ViewedScene& view) {
+void writeStats(const std::string& path, const Totals& totals, const Method& method, const ViewedScene& view,
+                double asked) {
   const double frames = totals.frames;
   const LightModel light = lightModelOf(view.scene, view.medium);
-  const nlohmann::ordered_json stats{{"seconds_load", totals.secondsLoad / frames},
-                                     {"ms_per_frame", totals.cost.milliseconds / frames},
-                                     {"samples_per_pixel", totals.cost.densitySamplesPerPixel / frames},
-                                     {"gpu_bytes", totals.cost.gpuBytes},
-                                     {"gpu_volume_bytes", totals.cost.volumeBytes},
-                                     {"gpu_texel", totals.cost.texel},
-                                     {"gl_renderer", method.renderer},
-                                     {"seconds_driver", method.secondsDriver},
-                                     {"seconds_shaders", method.secondsShaders},
-                                     {"look", nameOf(light.look)},
-                                     {"not_physical", unphysicalTerms(light)},
-                                     {"white_furnace", furnaceValue(light.octaveCount, light.a, light.b)}};
+  nlohmann::ordered_json stats{{"seconds_load", totals.secondsLoad / frames},
+                               {"ms_per_frame", totals.cost.milliseconds / frames},
+                               {"samples_per_pixel", totals.cost.densitySamplesPerPixel / frames},
+                               {"gpu_bytes", totals.cost.gpuBytes},
+                               {"gpu_volume_bytes", totals.cost.volumeBytes},
+                               {"gpu_texel", totals.cost.texel},
+                               {"gl_renderer", method.renderer},
+                               {"seconds_driver", method.secondsDriver},
+                               {"seconds_shaders", method.secondsShaders},
+                               {"look", nameOf(light.look)},
+                               {"not_physical", unphysicalTerms(light)},
+                               {"white_furnace", furnaceValue(light.octaveCount, light.a, light.b)}};
+  if (totals.error) stats["error"] = jsonOf(*totals.error, asked);
   const std::string text = stats.dump(2) + "\n";
   writeWhole(path, [&](const std::string& temporary) {
     std::ofstream out(temporary, std::ios::binary);
@@ -130,8 +167,9 @@ class Sequence {
     }
     method_->setVolume(bricks);
     PictureCost cost;
-    Picture picture = method_->render(*view_, request(), cost);
-    if (cost.relativeError > 0.0) std::cerr << "noise: " << 100.0 * cost.relativeError << "% relative RMSE\n";
+    Picture picture = chooses() ? renderWithin(bricks, cost) : method_->render(*view_, request(), cost);
+    if (cost.relativeError > 0.0 && !chooses())
+      std::cerr << "noise: " << kPercent * cost.relativeError << "% relative RMSE\n";
     if (!exposureEv_) exposureEv_ = hasExtension(out, ".png") ? exposureFor(options_, picture) : 0.0;
     writePicture(out, std::move(picture), *view_, *exposureEv_, options_.aov);
     ++totals_.frames;
@@ -144,7 +182,8 @@ class Sequence {
 
   /// Writes the stats of the frames that were rendered, where there are any.
   void finish() const {
-    if (!options_.stats.empty() && totals_.frames > 0) writeStats(options_.stats, totals_, *method_, *view_);
+    if (!options_.stats.empty() && totals_.frames > 0)
+      writeStats(options_.stats, totals_, *method_, *view_, options_.error);
   }
 
  private:
@@ -167,6 +206,69 @@ class Sequence {
                   << '\n';
   }
   bool isReference() const { return row_.name == kReferenceMethod; }
+  bool chooses() const { return options_.error > 0.0 && !isReference(); }
+
+  /// A picture that errs by no more than --error asks: the cheapest way that is expected to, and a dearer one
+  /// where the picture then measures worse.
+  Picture renderWithin(const BrickVolume& bricks, PictureCost& cost) {
+    const bool emits =
+        scene_.emission.on.value_or(true) && bricks.temperature && view_->medium.sigmaA != Rgb{};
+    requireTruth(*view_, emits);
+    if (!truth_) truth_ = findMethod(std::string(kReferenceMethod)).make({});
+    truth_->setVolume(bricks);
+    ErrorReport report;
+    auto start = Clock::now();
+    ErrorSearch search(*method_, *truth_, *view_, request(), options_.error);
+    report.stride = search.stride();
+    report.bounces = bouncesOfTruth(*view_, options_.bounces);
+    for (double aim = options_.error;;) {
+      report.pick = search.pick(aim);
+      report.waysMeasured = search.measuredRungs();
+      report.secondsChoosing += secondsSince(start);
+      std::cerr << "error: picked " << report.pick.setting.name << ", expected to err by "
+                << kPercent * report.pick.error << "% in " << report.pick.milliseconds << " ms, of "
+                << report.waysMeasured << " ways measured\n";
+      Picture picture = renderPick(report, cost);
+      start = Clock::now();
+      measure(search, picture, cost, report);
+      report.secondsMeasuring += secondsSince(start);
+      const double measured = report.measured.relativeRmse;
+      if (report.pick.setting.method == kReferenceMethod || measured <= options_.error) {
+        totals_.error = report;
+        return picture;
+      }
+      // Below what this way was expected to err by, so that the next one is another.
+      constexpr double kFurther = 0.95;
+      aim = kFurther * std::min(report.pick.error, aim) * std::min(1.0, options_.error / measured);
+      start = Clock::now();
+    }
+  }
+
+  Picture renderPick(const ErrorReport& report, PictureCost& cost) {
+    PictureRequest asked = request();
+    cost = {};
+    if (report.pick.setting.method != kReferenceMethod) {
+      asked.samples = report.pick.setting.samples;
+      return method_->render(withSetting(*view_, report.pick.setting), asked, cost);
+    }
+    asked.error = options_.error;
+    asked.bounces = report.bounces;
+    return truth_->render(*view_, asked, cost);
+  }
+
+  /// The reference errs by its noise alone, which it knows.
+  static void measure(ErrorSearch& search, const Picture& picture, const PictureCost& cost,
+                      ErrorReport& report) {
+    if (report.pick.setting.method == kReferenceMethod) {
+      report.measured.relativeRmse = report.measured.low = report.measured.high = cost.relativeError;
+      std::cerr << "error: the reference's noise is " << kPercent * cost.relativeError << "% relative RMSE\n";
+      return;
+    }
+    report.measured = search.measure(picture);
+    std::cerr << "error: measured " << kPercent * report.measured.relativeRmse << "% relative RMSE ("
+              << kPercent * report.measured.low << "% to " << kPercent * report.measured.high
+              << "%) on one pixel in " << search.stride() * search.stride() << '\n';
+  }
 
   const RenderOptions& options_;
   const MethodRow& row_;
@@ -174,6 +276,7 @@ class Sequence {
   std::optional<ViewedScene> view_;
   std::optional<double> exposureEv_;
   std::unique_ptr<Method> method_;
+  std::unique_ptr<Method> truth_;  // where --error chooses
   Totals totals_;
 };
 

@@ -25,8 +25,13 @@ double secondsSince(Clock::time_point start) {
 
 }  // namespace
 
-Accumulator::Accumulator(int width, int height, unsigned samples, unsigned seed)
-    : width_(width), height_(height), samples_(samples), seed_(seed), piecePixels_(kFirstPiecePixels) {}
+Accumulator::Accumulator(int width, int height, unsigned samples, unsigned seed, float pixelEdge)
+    : width_(width),
+      height_(height),
+      samples_(samples),
+      seed_(seed),
+      pixelEdge_(pixelEdge),
+      piecePixels_(kFirstPiecePixels) {}
 
 PixelRectangle Accumulator::next() const {
   if (x_ > 0 || piecePixels_ < int64_t{width_} * kBlockHeight) {
@@ -54,7 +59,7 @@ bool Accumulator::advance(MarchPass& pass, const BrickAtlas& atlas, const Film& 
   while (!done() && sample_ < until) {
     const PixelRectangle piece = next();
     const auto pieceStart = Clock::now();
-    pass.draw(atlas, film, subPixelOffset(sample_, seed_), sample_, piece);
+    pass.draw(atlas, film, pixelEdge_ * subPixelOffset(sample_, seed_), sample_, piece);
     finishGl("marching");
     // 1e-6 s: a clock may stand still over an empty piece.
     const double growth = kPieceSeconds / std::max(secondsSince(pieceStart), 1e-6);

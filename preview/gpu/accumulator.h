@@ -12,8 +12,9 @@ namespace nephele {
 /// one took. What is drawn does not depend on how it is cut up.
 class Accumulator {
  public:
-  /// Draws `samples` samples a pixel for `seed` into a film of the given size, which must be clear.
-  Accumulator(int width, int height, unsigned samples, unsigned seed);
+  /// Draws `samples` samples a pixel for `seed` into a film of the given size, which must be clear. Samples
+  /// cover `pixelEdge` of a pixel along each axis from its top left corner.
+  Accumulator(int width, int height, unsigned samples, unsigned seed, float pixelEdge = 1.0f);
 
   /// Draws and waits for the GPU until `seconds` are over (at least one piece), `until` samples are whole or
   /// all is done. Returns false once all is done.
@@ -34,6 +35,7 @@ class Accumulator {
   int height_;
   unsigned samples_;
   unsigned seed_;
+  float pixelEdge_;
   unsigned sample_ = 0;
   int x_ = 0;
   int y_ = 0;

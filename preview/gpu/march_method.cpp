@@ -33,6 +33,19 @@ void refuseCutRays(const FilmPicture& result) {
                    "shadow_growth)");
 }
 
+/// Rays through every stride-th pixel alone, from the one at stride/2 on.
+void takeEvery(int stride, shared::MarchParameters& p) {
+  const auto thin = [stride](glm::vec4& corner, glm::vec4& dx, glm::vec4& dy) {
+    const float first = static_cast<float>(stride / 2), times = static_cast<float>(stride);
+    corner += first * (dx + dy);
+    dx *= times;
+    dy *= times;
+  };
+  thin(p.originCorner, p.originDx, p.originDy);  // w of both steps is 0
+  thin(p.directionCorner, p.directionDx, p.directionDy);
+  thin(p.rayCorner, p.rayDx, p.rayDy);
+}
+
 class MarchMethod : public Method {
  public:
   explicit MarchMethod(const MethodOptions& options) {
@@ -55,12 +68,19 @@ class MarchMethod : public Method {
     NEPHELE_CHECK_EQ(volume_.has_value(), true);
     const BrickAtlas& atlas = volume_->atlasFor(0, view.scene.march);
     const auto start = Clock::now();
-    const Film film(request.width, request.height);
-    pass_->setParameters(marchParameters(view, *bricks_, request.width, request.height, request.seed, true));
+    const int width = strided(request.width, request.stride),
+              height = strided(request.height, request.stride);
+    const Film film(width, height);
+    shared::MarchParameters parameters =
+        marchParameters(view, *bricks_, request.width, request.height, request.seed, true);
+    takeEvery(request.stride, parameters);
+    pass_->setParameters(parameters);
     pass_->setEnvironment(view.environmentMap);
     pass_->prepare(atlas, std::numeric_limits<double>::infinity());
     const double cacheDensities = pass_->takeCacheDensities();
-    Accumulator accumulator(request.width, request.height, request.samples, request.seed);
+    cost.millisecondsPreparing = secondsSince(start) * 1e3;
+    Accumulator accumulator(width, height, request.samples, request.seed,
+                            1.0f / static_cast<float>(request.stride));
     {
       Progress progress("rendering", accumulator.pixelsTotal(), request.quiet);
       for (uint64_t before = 0; !accumulator.done();) {
@@ -73,7 +93,7 @@ class MarchMethod : public Method {
     refuseCutRays(result);
     cost.milliseconds = secondsSince(start) * 1e3;
     cost.densitySamplesPerPixel =
-        (result.densitySamples + cacheDensities) / (static_cast<double>(request.width) * request.height);
+        (result.densitySamples + cacheDensities) / (static_cast<double>(width) * height);
     cost.gpuBytes = volume_->gpuBytes() + film.gpuBytes() + pass_->gpuBytes();
     cost.volumeBytes = volume_->gpuBytes() + pass_->gpuBytes();
     cost.texel = std::string(nameOf(atlas.layout().texel));

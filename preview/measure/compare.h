@@ -10,6 +10,9 @@
 
 namespace nephele {
 
+/// Whether a picture holds the planes half1.R … half2.B: two independent estimates of R, G and B.
+bool hasHalves(const Picture& picture);
+
 /// Errors of a picture x against a reference r over the pixels where either alpha exceeds 1e-3 (all pixels
 /// where a picture has no alpha), of R, G and B. Relative figures are infinite where r is black and x is not,
 /// 0 where both are black.
@@ -21,6 +24,7 @@ struct Comparison {
   double maximum = 0.0;  // its largest value
 };
 
+/// Where the reference holds two halves, its noise is taken out of relativeRmse as compareWithHalves does.
 /// Throws InputError where sizes differ, R, G or B is missing, or a value is not finite; the names are for
 /// sentences.
 Comparison comparePictures(const Picture& picture, const std::string& pictureName, const Picture& reference,

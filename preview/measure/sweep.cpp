@@ -24,33 +24,11 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::string nameOf(const Setting& setting) {
-  std::ostringstream out;
-  out << setting.method;
-  if (setting.method != kTruth) {
-    out << " step " << setting.march.stepVoxels;
-    if (setting.march.lightCache)
-      out << ", light cached";
-    else
-      out << ", shadow step " << setting.march.shadowStepVoxels;
-    if (setting.octaves) out << ", octaves " << *setting.octaves;
-  }
-  out << ", " << setting.samples << " spp";
-  return out.str();
-}
-
 /// A guess of relative cost, for order alone.
 double guessedCost(const Setting& setting) {
   constexpr double kTruthCost = 0.1, kMarchedLight = 4.0;  // beside a march of one voxel under cached light
   if (setting.method == kTruth) return kTruthCost * setting.samples;
   return setting.samples / setting.march.stepVoxels * (setting.march.lightCache ? 1.0 : kMarchedLight);
-}
-
-ViewedScene withSetting(const ViewedScene& view, const Setting& setting) {
-  ViewedScene changed = view;
-  changed.scene.march = setting.march;
-  if (setting.octaves) changed.scene.octaves.count = *setting.octaves;
-  return changed;
 }
 
 /// Makes methods as they are needed and keeps them.
@@ -131,6 +109,28 @@ std::vector<Measured> overViews(const std::vector<Measured>& single, size_t sett
 }
 
 }  // namespace
+
+std::string nameOf(const Setting& setting) {
+  std::ostringstream out;
+  out << setting.method;
+  if (setting.method != kTruth) {
+    out << " step " << setting.march.stepVoxels;
+    if (setting.march.lightCache)
+      out << ", light cached every " << setting.march.cacheVoxels;
+    else
+      out << ", shadow step " << setting.march.shadowStepVoxels;
+    if (setting.octaves) out << ", octaves " << *setting.octaves;
+  }
+  out << ", " << setting.samples << " spp";
+  return out.str();
+}
+
+ViewedScene withSetting(const ViewedScene& view, const Setting& setting) {
+  ViewedScene changed = view;
+  changed.scene.march = setting.march;
+  if (setting.octaves) changed.scene.octaves.count = *setting.octaves;
+  return changed;
+}
 
 std::vector<Setting> settingsFor(const std::vector<std::string>& methods, const Scene& scene) {
   std::vector<Setting> settings;

@@ -20,6 +20,11 @@ struct Setting {
   std::optional<int> octaves;  // none: the scene's
 };
 
+/// "march step 0.5, light cached every 2.67, 4 spp".
+std::string nameOf(const Setting& setting);
+/// The view with a setting's march and octaves.
+ViewedScene withSetting(const ViewedScene& view, const Setting& setting);
+
 /// A camera and a light to measure under.
 struct SweepView {
   std::string name;

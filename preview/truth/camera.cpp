@@ -35,6 +35,10 @@ CameraRays::CameraRays(const Camera& camera, const BrickVolume& bricks, int widt
   boxMax_ = glm::min(dvec3(bricks.activeMax) - brickCorner, dvec3(bricks.brickCount * kBrickCells));
 }
 
+glm::vec3 CameraRays::along(double x, double y) const {
+  return glm::vec3(glm::normalize(corner_ + x * dx_ + y * dy_));
+}
+
 std::optional<EnteringRay> CameraRays::at(double x, double y) const {
   const dvec3 along = glm::normalize(corner_ + x * dx_ + y * dy_);
   const dvec3 direction = indexFromWorld_ * along;

@@ -24,6 +24,8 @@ class CameraRays {
   /// The ray through picture position (x, y), in pixels from the top left corner; nothing where it misses the
   /// support.
   std::optional<EnteringRay> at(double x, double y) const;
+  /// The ray's direction alone, unit, world axes.
+  glm::vec3 along(double x, double y) const;
 
  private:
   glm::dvec3 origin_;            // voxels from the corner of the brick grid

@@ -18,6 +18,7 @@
 #include "preview/truth/estimate.h"
 #include "preview/truth/path_tracer.h"
 #include "scene/light_model.h"
+#include "scene/sky.h"
 
 namespace nephele {
 namespace {
@@ -51,6 +52,19 @@ glm::dvec3 worldCorner(const BrickVolume& bricks) {
   return glm::dvec3(bricks.worldFromIndex * glm::dvec4(glm::dvec3(bricks.brickMin * kBrickCells), 1.0));
 }
 
+/// The environment behind the medium, where the scene asks to show it.
+struct SkyBehind {
+  explicit SkyBehind(const ViewedScene& viewed) : view(viewed), shown(viewed.scene.environment.show) {}
+  void add(const glm::vec3& along, float share, const glm::vec3& transmittance, BlockMean& mean) const {
+    const glm::dvec3 radiance =
+        skyRadiance(view.scene.environment, view.environmentMap.get(), view.up, glm::dvec3(along));
+    for (int c = 0; c < 3; ++c)
+      mean.radiance[c] += share * transmittance[c] * static_cast<float>(radiance[c]);
+  }
+  const ViewedScene& view;
+  bool shown;
+};
+
 /// One picture being sampled.
 class Sampling {
  public:
@@ -60,14 +74,16 @@ class Sampling {
         lights_(view, medium_, worldCorner(bricks)),
         tracer_(medium_, phaseOf(view), lights_, {request.bounces.value_or(-1), true}),
         rays_(view.camera, bricks, request.width, request.height),
-        estimate_(request.width, request.height) {}
+        sky_(view),
+        width_(strided(request.width, request.stride)),
+        height_(strided(request.height, request.stride)),
+        estimate_(width_, height_) {}
 
   /// Adds blocks [first, last) of `size` samples to every pixel.
   void add(unsigned first, unsigned last, unsigned size) {
     constexpr int kTile = 16;  // neighbours share what lies in the caches
-    const tbb::blocked_range2d<int> all(0, request_.height, kTile, 0, request_.width, kTile);
-    Progress progress("tracing",
-                      static_cast<uint64_t>(request_.width) * static_cast<uint64_t>(request_.height),
+    const tbb::blocked_range2d<int> all(0, height_, kTile, 0, width_, kTile);
+    Progress progress("tracing", static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_),
                       request_.quiet);
     tbb::parallel_for(all, [&](const tbb::blocked_range2d<int>& tile) {
       uint64_t looks = 0;
@@ -81,9 +97,13 @@ class Sampling {
 
   const Estimate& estimate() const { return estimate_; }
   uint64_t looks() const { return looks_; }
+  size_t pixels() const { return static_cast<size_t>(width_) * static_cast<size_t>(height_); }
 
  private:
-  void addBlock(int x, int y, unsigned block, unsigned size, uint64_t& looks) {
+  /// `column` and `row` are of the pixels that are traced. Random numbers are those of the whole picture.
+  void addBlock(int column, int row, unsigned block, unsigned size, uint64_t& looks) {
+    const int x = column * request_.stride + request_.stride / 2,
+              y = row * request_.stride + request_.stride / 2;
     const size_t pixel =
         static_cast<size_t>(y) * static_cast<size_t>(request_.width) + static_cast<size_t>(x);
     const uint64_t seed = seedOf(request_.seed, pixel, block);
@@ -92,17 +112,22 @@ class Sampling {
     for (unsigned i = 0; i < size; ++i) {
       const double atX = x + double{stratified(0, i, seed)}, atY = y + double{stratified(1, i, seed)};
       const auto entering = rays_.at(atX, atY);
-      if (!entering) continue;
+      if (!entering) {
+        if (sky_.shown) sky_.add(rays_.along(atX, atY), share, glm::vec3(1.0f), mean);
+        continue;
+      }
       Random random(seedOf(seed, i));
       const PathSample sample = tracer_.trace(entering->ray, entering->along, {i, seed}, random, looks);
       for (int c = 0; c < 3; ++c) {
         mean.radiance[c] += share * sample.radiance[c];
         mean.transmittance[c] -= share * (1.0f - sample.transmittance[c]);
       }
+      if (sky_.shown) sky_.add(entering->along, share, sample.transmittance, mean);
       mean.taken += share * sample.taken;
       mean.takenDistance += share * sample.taken * (static_cast<float>(entering->before) + sample.distance);
     }
-    estimate_.add(pixel, block, mean);
+    estimate_.add(static_cast<size_t>(row) * static_cast<size_t>(width_) + static_cast<size_t>(column), block,
+                  mean);
   }
 
   const PictureRequest& request_;
@@ -110,6 +135,8 @@ class Sampling {
   LightSources lights_;
   PathTracer tracer_;
   CameraRays rays_;
+  SkyBehind sky_;
+  int width_, height_;
   Estimate estimate_;
   std::atomic<uint64_t> looks_{0};
 };
@@ -137,6 +164,24 @@ unsigned sampleUntil(Sampling& sampling, double error, unsigned size) {
   }
 }
 
+/// Nothing but what stands behind, seen through the pixels' centres.
+Picture emptyPicture(const ViewedScene& view, const PictureRequest& request, unsigned blocks) {
+  const int width = strided(request.width, request.stride), height = strided(request.height, request.stride);
+  const SkyBehind sky(view);
+  const CameraRays rays(view.camera, BrickVolume{}, request.width, request.height);
+  const auto centre = [&](int at) { return at * request.stride + request.stride / 2 + 0.5; };
+  Estimate estimate(width, height);
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column) {
+      BlockMean mean;
+      if (sky.shown) sky.add(rays.along(centre(column), centre(row)), 1.0f, glm::vec3(1.0f), mean);
+      for (unsigned block = 0; block < blocks; ++block)
+        estimate.add(static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column),
+                     block, mean);
+    }
+  return estimate.picture(blocks);
+}
+
 class ReferenceMethod : public Method {
  public:
   ReferenceMethod() { renderer = "CPU"; }
@@ -150,11 +195,7 @@ class ReferenceMethod : public Method {
     Picture picture;
     const bool medium = view.medium.sigmaS != Rgb{} || view.medium.sigmaA != Rgb{};
     if (bricks_->empty() || !medium) {
-      Estimate estimate(request.width, request.height);
-      for (size_t pixel = 0; pixel < static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
-           ++pixel)
-        for (unsigned block = 0; block < blocks; ++block) estimate.add(pixel, block, {});
-      picture = estimate.picture(blocks);
+      picture = emptyPicture(view, request, blocks);
       cost = {};
     } else {
       Sampling sampling(*bricks_, view, request);
@@ -168,7 +209,7 @@ class ReferenceMethod : public Method {
       }
       picture = sampling.estimate().picture(blocks);
       cost.densitySamplesPerPixel =
-          static_cast<double>(sampling.looks()) / (static_cast<double>(request.width) * request.height);
+          static_cast<double>(sampling.looks()) / static_cast<double>(sampling.pixels());
       cost.relativeError = sampling.estimate().relativeError(blocks);
       cost.gpuBytes = 0;
     }
