@@ -59,7 +59,6 @@ HWY_INLINE void setAxis(double origin, double cellSize, float step, BlockAxis& a
 constexpr int kMostCorners = 6;
 // Rows along z are worked on in vectors of 4 (half a row), 8 (a row) or 16 (the same row of two neighbouring
 // x planes).
-using Tag = hn::CappedTag<float, 16>;
 constexpr size_t kLanes = HWY_MAX_BYTES / sizeof(float) < 16 ? HWY_MAX_BYTES / sizeof(float) : 16;
 constexpr size_t kRowLanes = kLanes < 8 ? kLanes : 8;
 constexpr size_t kGroups = 8 / kRowLanes;
@@ -119,7 +118,6 @@ HWY_INLINE void addToPlanes(hn::Vec<Tag> v, float* first) {
 // Adds one octave to the rows of one group along z (all of z, or half).
 HWY_INLINE void addGroup(const NoiseOctave& octave, const BlockAxis& ax, const BlockAxis& ay,
                          const BlockAxis& az, size_t group, float* sums) {
-  using V = hn::Vec<Tag>;
   const Tag d;
   const size_t z0 = group * kRowLanes;
   Corners corners;

@@ -24,11 +24,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET != HWY_SCALAR
 
-using Tag = hn::CappedTag<float, 16>;
-using TagU = hn::RebindToUnsigned<Tag>;
-using V = hn::Vec<Tag>;
-using VU = hn::Vec<TagU>;
-
 HWY_INLINE glm::vec3 plainGradient(uint32_t hash) {
   const uint32_t number = hash >> 28;
   return {kGradientX[number], kGradientY[number], kGradientZ[number]};

@@ -19,6 +19,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET != HWY_SCALAR
 
+using Tag = hn::CappedTag<float, 16>;
+using TagU = hn::RebindToUnsigned<Tag>;
+using V = hn::Vec<Tag>;
+using VU = hn::Vec<TagU>;
+
 // The same constants as in shared::hashCorner, which NoiseKernels.AgreeWithTheDefinition holds them to.
 constexpr uint32_t kHashX = 0x9e3779b1u, kHashY = 0x85ebca77u, kHashZ = 0xc2b2ae3du;
 constexpr uint32_t kMix = 0x2c1b3c6du;

@@ -14,6 +14,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "bake/fields/noise_vectors.h"
+
 #ifndef NEPHELE_WORLEY_RINGS
 #define NEPHELE_WORLEY_RINGS
 namespace nephele {
@@ -50,23 +52,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET != HWY_SCALAR
 
-using Tag = hn::CappedTag<float, 16>;
-using UTag = hn::RebindToUnsigned<Tag>;
-using V = hn::Vec<Tag>;
-using VU = hn::Vec<UTag>;
-
-// The same constants as in shared::hashCell, which WorleyKernels.StrewnPointsAgreeWithTheDefinition holds
-// them to.
-constexpr uint32_t kHashX = 0x9e3779b1u, kHashY = 0x85ebca77u, kHashZ = 0xc2b2ae3du;
-constexpr uint32_t kMixFirst = 0x2c1b3c6du, kMixSecond = 0x297a2d39u;
-
+// The rest of shared::hashCell, which WorleyKernels.StrewnPointsAgreeWithTheDefinition holds this to.
 HWY_INLINE VU hashed(VU key) {
-  const UTag d;
-  VU h = hn::Xor(key, hn::ShiftRight<15>(key));
-  h = hn::Mul(h, hn::Set(d, kMixFirst));
-  h = hn::Xor(h, hn::ShiftRight<12>(h));
-  h = hn::Mul(h, hn::Set(d, kMixSecond));
-  return hn::Xor(h, hn::ShiftRight<15>(h));
+  constexpr uint32_t kMixSecond = 0x297a2d39u;
+  const VU h = mixed(spread(key));
+  return spread(hn::Mul(hn::Xor(h, hn::ShiftRight<12>(h)), hn::Set(TagU(), kMixSecond)));
 }
 
 // One axis for a vector of points: the place and the own cell's corner in the frame asked for, the keys of
@@ -82,7 +72,7 @@ struct Along {
 
   HWY_INLINE void set(const float* places, int32_t cell, Frame frame, uint32_t prime) {
     const Tag d;
-    const UTag du;
+    const TagU du;
     const hn::RebindToSigned<Tag> di;
     const V along = hn::LoadU(d, places), whole = hn::Floor(along);
     const V inside = hn::Sub(along, whole);
@@ -114,7 +104,7 @@ template <bool kSecond>
 HWY_INLINE void nearest(const WorleyNoise& noise, const StrewnPlaces& places, Frame frame, size_t n, V& first,
                         V& second) {
   const Tag d;
-  const UTag du;
+  const TagU du;
   Along x, y, z;
   x.set(places.x + n, places.cellX, frame, kHashX);
   y.set(places.y + n, places.cellY, frame, kHashY);

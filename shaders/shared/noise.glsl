@@ -88,6 +88,13 @@ NPH_FN int foldCell(int cell, int period) {
   return rest < 0 ? rest + period : rest;
 }
 
+NPH_FN ivec3 foldedCell(ivec3 cell, int period) {
+  return ivec3(foldCell(cell.x, period), foldCell(cell.y, period), foldCell(cell.z, period));
+}
+
+// A cell's corner 0…7, x fastest, then y, then z, relative to the first.
+NPH_FN ivec3 cornerOffset(int corner) { return ivec3(corner & 1, (corner >> 1) & 1, corner >> 2); }
+
 // A cell's eight corner values (x fastest, then y, then z) at the place f in it, by the quintic fade.
 NPH_FN float mixCorners(float corner[8], vec3 f) {
   float sx = fadeQuintic(f.x);
@@ -106,8 +113,8 @@ NPH_FN float mixCorners(float corner[8], vec3 f) {
 NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
   float corner[8];
   for (int c = 0; c < 8; ++c) {
-    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
-    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    ivec3 o = cornerOffset(c);
+    ivec3 at = foldedCell(cell + o, period);
     corner[c] = gradientDot(hashGradient(at, seed), f.x - float(o.x), f.y - float(o.y), f.z - float(o.z));
   }
   return mixCorners(corner, f) * kPerlinScale;
@@ -118,8 +125,8 @@ NPH_FN float perlinNoise(ivec3 cell, vec3 f, int period, uint seed) {
 NPH_FN float turningNoise(ivec3 cell, vec3 f, int period, uint seed, vec4 turn) {
   float corner[8];
   for (int c = 0; c < 8; ++c) {
-    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
-    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    ivec3 o = cornerOffset(c);
+    ivec3 at = foldedCell(cell + o, period);
     vec3 g = turnedGradient(hashCorner(at, seed), turn);
     vec3 d = vec3(f.x - float(o.x), f.y - float(o.y), f.z - float(o.z));
     corner[c] = g.x * d.x + g.y * d.y + g.z * d.z;
@@ -134,7 +141,7 @@ NPH_FN vec3 slopeOfCorners(vec3 gradient[8], vec3 f) {
   vec3 rise = 30.0f * f * f * (f - vec3(1.0f)) * (f - vec3(1.0f));  // the fade's derivative
   vec3 slope = vec3(0.0f);
   for (int c = 0; c < 8; ++c) {
-    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
+    ivec3 o = cornerOffset(c);
     vec3 d = f - vec3(float(o.x), float(o.y), float(o.z));
     vec3 g = gradient[c];
     float value = g.x * d.x + g.y * d.y + g.z * d.z;
@@ -153,8 +160,8 @@ NPH_FN vec3 slopeOfCorners(vec3 gradient[8], vec3 f) {
 NPH_FN vec3 perlinSlope(ivec3 cell, vec3 f, int period, uint seed) {
   vec3 gradient[8];
   for (int c = 0; c < 8; ++c) {
-    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
-    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    ivec3 o = cornerOffset(c);
+    ivec3 at = foldedCell(cell + o, period);
     uint h = hashGradient(at, seed);
     gradient[c] =
         vec3(gradientDot(h, 1.0f, 0.0f, 0.0f), gradientDot(h, 0.0f, 1.0f, 0.0f), gradientDot(h, 0.0f, 0.0f, 1.0f));
@@ -166,8 +173,8 @@ NPH_FN vec3 perlinSlope(ivec3 cell, vec3 f, int period, uint seed) {
 NPH_FN vec3 turningSlope(ivec3 cell, vec3 f, int period, uint seed, vec4 turn) {
   vec3 gradient[8];
   for (int c = 0; c < 8; ++c) {
-    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
-    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    ivec3 o = cornerOffset(c);
+    ivec3 at = foldedCell(cell + o, period);
     gradient[c] = turnedGradient(hashCorner(at, seed), turn);
   }
   return slopeOfCorners(gradient, f) * kTurningScale;
@@ -177,8 +184,8 @@ NPH_FN vec3 turningSlope(ivec3 cell, vec3 f, int period, uint seed, vec4 turn) {
 NPH_FN float valueNoise(ivec3 cell, vec3 f, int period, uint seed) {
   float corner[8];
   for (int c = 0; c < 8; ++c) {
-    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
-    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    ivec3 o = cornerOffset(c);
+    ivec3 at = foldedCell(cell + o, period);
     // 2^-23: the hash's upper 24 bits become [0, 2).
     corner[c] = float(hashCell(at, seed) >> 8u) * 1.1920929e-7f - 1.0f;
   }
@@ -189,8 +196,8 @@ NPH_FN float valueNoise(ivec3 cell, vec3 f, int period, uint seed) {
 NPH_FN float turningValue(ivec3 cell, vec3 f, int period, uint seed, vec4 turn) {
   float corner[8];
   for (int c = 0; c < 8; ++c) {
-    ivec3 o = ivec3(c & 1, (c >> 1) & 1, c >> 2);
-    ivec3 at = ivec3(foldCell(cell.x + o.x, period), foldCell(cell.y + o.y, period), foldCell(cell.z + o.z, period));
+    ivec3 o = cornerOffset(c);
+    ivec3 at = foldedCell(cell + o, period);
     uint h = hashCell(at, seed);
     // 2^-23: the hash's upper 24 bits become [0, 2). The lower eight are free.
     corner[c] = onOrbit(float(h >> 8u) * 1.1920929e-7f - 1.0f, h, turnOf(h >> 2u, turn));
@@ -201,14 +208,14 @@ NPH_FN float turningValue(ivec3 cell, vec3 f, int period, uint seed, vec4 turn) 
 // The one feature point of a cell, in [0, 1)³ from its corner: the centre for jitter 0, anywhere for 1. Multiples of 1/2048
 // (along z 1/1024), which one hash holds.
 NPH_FN vec3 featurePoint(ivec3 cell, float jitter, int period, uint seed) {
-  uint h = hashCell(ivec3(foldCell(cell.x, period), foldCell(cell.y, period), foldCell(cell.z, period)), seed);
+  uint h = hashCell(foldedCell(cell, period), seed);
   vec3 place = vec3(float(h & 0x7ffu), float((h >> 11u) & 0x7ffu), float((h >> 22u) << 1u)) * (1.0f / 2048.0f);
   return vec3(0.5f) + jitter * (place - vec3(0.5f));
 }
 
 // The same point as it moves on a closed orbit in its cell, of which it is evenly likely to be anywhere at any time (onOrbit).
 NPH_FN vec3 turnedFeature(ivec3 cell, float jitter, int period, uint seed, vec4 turn) {
-  uint h = hashCell(ivec3(foldCell(cell.x, period), foldCell(cell.y, period), foldCell(cell.z, period)), seed);
+  uint h = hashCell(foldedCell(cell, period), seed);
   vec3 place = vec3(float(h & 0x7ffu), float((h >> 11u) & 0x7ffu), float((h >> 22u) << 1u)) * (1.0f / 2048.0f);
   // All of that hash is in use: another multiplication gives eight more bits.
   uint more = ((h ^ (h >> 15u)) * 0x2c1b3c6du) >> 24u;

@@ -10,11 +10,6 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-glm::dvec3 randomPoint(std::mt19937_64& random, double reach) {
-  std::uniform_real_distribution<double> place(-reach, reach);
-  return {place(random), place(random), place(random)};
-}
-
 TEST(Cauliflower, WithoutScalesIsItsEllipsoid) {
   const FieldPtr bare = makeField("cauliflower", {{"scales", int64_t{0}}, {"falloff", 0.2}});
   const FieldPtr ellipsoid = makeField("ellipsoid", {{"radii", Vector{0.55, 0.55, 0.42}}, {"falloff", 0.2}});

@@ -271,13 +271,9 @@ TEST(Evolving, BoundsContainEveryValue) {
     for (int b = 0; b < 600; ++b) {
       const glm::dvec3 low(3.0 * unit(random), -2.0 * unit(random), unit(random));
       const double size = std::pow(10.0, -3.0 * unit(random));
-      float x[64], y[64], z[64], values[64];
-      for (int n = 0; n < 64; ++n) {
-        x[n] = float(size) * unit(random);
-        y[n] = float(size) * unit(random);
-        z[n] = float(size) * unit(random);
-      }
-      field->evaluate(Points{low, 64, x, y, z}, values);
+      const PointsInBox<64> points(random, glm::dvec3(size));
+      float values[64];
+      field->evaluate(points.from(low), values);
       const Interval bounds = field->bounds({low, low + size});
       for (const float v : values) ASSERT_TRUE(containsValue(bounds, double(v))) << row.name;
     }

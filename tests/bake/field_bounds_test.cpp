@@ -24,19 +24,13 @@ class EveryField : public testing::TestWithParam<std::string> {};
 TEST_P(EveryField, BoundsContainEveryValue) {
   const FieldPtr field = makeField(GetParam());
   std::mt19937_64 random(1);
-  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
   constexpr int kBoxes = 4000, kPoints = 250;  // a million points a field
-  float x[kPoints], y[kPoints], z[kPoints], values[kPoints];
+  float values[kPoints];
   int tight = 0;
   for (int b = 0; b < kBoxes; ++b) {
     const Box box = randomBox(random);
-    const glm::dvec3 size = box.high - box.low;
-    for (int n = 0; n < kPoints; ++n) {
-      x[n] = float(size.x) * unit(random);
-      y[n] = float(size.y) * unit(random);
-      z[n] = float(size.z) * unit(random);
-    }
-    field->evaluate(Points{box.low, kPoints, x, y, z}, values);
+    const PointsInBox<kPoints> points(random, box.high - box.low);
+    field->evaluate(points.from(box.low), values);
     const Interval bounds = field->bounds(box);
     ASSERT_LE(bounds.low, bounds.high);
     float low = values[0], high = values[0];
@@ -82,12 +76,7 @@ TEST_P(EveryField, BlocksAgreeWithPoints) {
   EXPECT_LE(largest, 2e-5f);
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> list;
-  for (const FieldRow& row : fieldTable()) list.emplace_back(row.name);
-  return list;
-}
-INSTANTIATE_TEST_SUITE_P(Table, EveryField, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Table, EveryField, testing::ValuesIn(fieldNames()),
                          [](const auto& row) { return row.param; });
 
 TEST(Box, HullAndIntersectionTreatEmptyOnesRightly) {

@@ -82,12 +82,7 @@ TEST_P(EveryField, AMillionBoxesHoldTheirValues) {
                               << strays.front();
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> list;
-  for (const FieldRow& row : fieldTable()) list.emplace_back(row.name);
-  return list;
-}
-INSTANTIATE_TEST_SUITE_P(Table, EveryField, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Table, EveryField, testing::ValuesIn(fieldNames()),
                          [](const auto& row) { return row.param; });
 
 }  // namespace

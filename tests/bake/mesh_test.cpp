@@ -16,11 +16,6 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-glm::dvec3 randomPoint(std::mt19937_64& random, double reach) {
-  std::uniform_real_distribution<double> place(-reach, reach);
-  return {place(random), place(random), place(random)};
-}
-
 /// A ball of flat faces: an octahedron whose triangles are cut in four, `cuts` times.
 std::string ballAsObj(int cuts, double radius) {
   std::vector<std::array<glm::dvec3, 3>> faces;

@@ -53,21 +53,16 @@ TEST(Transform, TurnsFromXTowardsY) {
 void expectSound(const FieldPtr& field) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> place(-3.0, 3.0), exponent(-2.5, 0.5);
-  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
   for (int b = 0; b < 1000; ++b) {
     const glm::dvec3 low(place(random), place(random), place(random));
     const double size = std::pow(10.0, exponent(random));
-    float x[64], y[64], z[64], values[64];
-    for (int n = 0; n < 64; ++n) {
-      x[n] = float(size) * unit(random);
-      y[n] = float(size) * unit(random);
-      z[n] = float(size) * unit(random);
-    }
-    field->evaluate(Points{low, 64, x, y, z}, values);
+    const PointsInBox<64> points(random, glm::dvec3(size));
+    float values[64];
+    field->evaluate(points.from(low), values);
     const Interval bounds = field->bounds({low, low + size});
     for (int n = 0; n < 64; ++n) {
       ASSERT_TRUE(containsValue(bounds, double(values[n])));
-      const glm::dvec3 p = low + glm::dvec3(double(x[n]), double(y[n]), double(z[n]));
+      const glm::dvec3 p = low + glm::dvec3(double(points.x[n]), double(points.y[n]), double(points.z[n]));
       if (intersection(field->support(), Box{p, p}).empty()) {
         ASSERT_EQ(values[n], 0.0f);
       }
