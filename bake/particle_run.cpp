@@ -36,7 +36,13 @@ struct ParticleRun::State {
   std::string key;     // of all that the simulation depends on
   std::vector<SiteSourcePtr> sources;
   std::unique_ptr<Simulation> simulation;
+  std::optional<int> viewed;  // the frame that the view shows
   ParticleView view;
+
+  /// "asset 'plume', frame 3: ".
+  std::string name() const {
+    return "asset '" + asset.name + "'" + (viewed ? ", frame " + std::to_string(*viewed) : "") + ": ";
+  }
 
   int upAxis() const { return pipeline.upAxis == 'y' ? 1 : 2; }
 
@@ -100,12 +106,12 @@ struct ParticleRun::State {
     }
   }
 
-  SplatSettings splatSettings(std::optional<int> frame) const {
+  SplatSettings splatSettings(const Asset& look) const {
     SplatSettings settings;
-    settings.voxelSize = asset.voxelSize;
+    settings.voxelSize = look.voxelSize;
     settings.kernel = system.kernel;
-    settings.cutoff = asset.cutoff;
-    settings.half = asset.precision == Precision::half;
+    settings.cutoff = look.cutoff;
+    settings.half = look.precision == Precision::half;
     settings.shutterSeconds = system.shutter / asset.fps;
     for (const std::string& grid : system.grids) {
       settings.vel = settings.vel || grid == "vel";
@@ -113,7 +119,7 @@ struct ParticleRun::State {
       settings.age = settings.age || grid == "age";
     }
     if (asset.erosion) {
-      BuildContext context = contextOf(pipeline, asset, frame);
+      BuildContext context = contextOf(pipeline, look, viewed);
       // It is read in radii of particles, which the grid's band limit knows nothing of: no octave is left
       // out.
       constexpr double kFine = 1e-6;
@@ -134,6 +140,7 @@ ParticleRun::ParticleRun(const Pipeline& pipeline, const Asset& asset, const std
                        simulationHash(pipeline, asset),
                        {},
                        nullptr,
+                       std::nullopt,
                        {}}) {
   for (size_t n = 0; n < asset.particles->emitters.size(); ++n)
     state_->sources.push_back(makeSiteSource(asset.particles->emitters[n], asset.particleFiles[n].path));
@@ -141,30 +148,51 @@ ParticleRun::ParticleRun(const Pipeline& pipeline, const Asset& asset, const std
 
 ParticleRun::~ParticleRun() = default;
 
-ParticleFrame ParticleRun::frame(std::optional<int> frame) {
+uint64_t ParticleRun::moveTo(std::optional<int> frame) {
   State& s = *state_;
-  const std::string what =
-      "asset '" + s.asset.name + "'" + (frame ? ", frame " + std::to_string(*frame) : "") + ": ";
-  ParticleFrame result;
+  s.viewed = frame;
   try {
-    auto start = std::chrono::steady_clock::now();
     s.begin(frame.value_or(0));
     const uint64_t before = s.simulation->stepsDone();
     s.advance(frame.value_or(0));
-    result.stepsSimulated = s.simulation->stepsDone() - before;
     s.view = s.simulation->view();
-    result.secondsSimulate = secondsSince(start);
-    start = std::chrono::steady_clock::now();
-    const ParticleView& v = s.view;
-    result.splatted = splat({v.x, v.y, v.z, v.radius, v.mass, v.vx, v.vy, v.vz, v.temperature, v.age,
-                             s.simulation->particles().id},
-                            s.splatSettings(frame));
-    result.secondsSplat = secondsSince(start);
+    return s.simulation->stepsDone() - before;
   } catch (const SimulationError& error) {
-    throw InputError(s.asset.where, what + error.what());
-  } catch (const SplatError& error) {
-    throw InputError(s.asset.where, what + error.what());
+    throw InputError(s.asset.where, s.name() + error.what());
   }
+}
+
+Splatted ParticleRun::splatted(const Asset& look) const {
+  const State& s = *state_;
+  const ParticleView& v = s.view;
+  try {
+    return splat({v.x, v.y, v.z, v.radius, v.mass, v.vx, v.vy, v.vz, v.temperature, v.age,
+                  s.simulation->particles().id},
+                 s.splatSettings(look));
+  } catch (const SplatError& error) {
+    throw InputError(s.asset.where, s.name() + error.what());
+  }
+}
+
+Box ParticleRun::extent() const {
+  Box box = nothing();
+  const ParticleView& v = state_->view;
+  for (size_t n = 0; n < v.size(); ++n) {
+    const glm::dvec3 at(double(v.x[n]), double(v.y[n]), double(v.z[n]));
+    box = hull(box, {at - double(v.radius[n]), at + double(v.radius[n])});
+  }
+  return box;
+}
+
+ParticleFrame ParticleRun::frame(std::optional<int> frame) {
+  State& s = *state_;
+  ParticleFrame result;
+  auto start = std::chrono::steady_clock::now();
+  result.stepsSimulated = moveTo(frame);
+  result.secondsSimulate = secondsSince(start);
+  start = std::chrono::steady_clock::now();
+  result.splatted = splatted(s.asset);
+  result.secondsSplat = secondsSince(start);
   const BirthLedger& births = s.simulation->ledger();
   const SplatLedger& grid = result.splatted.ledger;
   MassLedger& m = result.mass;
@@ -174,7 +202,7 @@ ParticleFrame ParticleRun::frame(std::optional<int> frame) {
        births.countEmitted, s.view.size()};
   const double lost = m.alive > 0.0 ? (m.alive - m.stored) / m.alive : 0.0;
   if (lost > s.system.massTolerance)
-    throw InputError(s.asset.where, what + "the grid loses " + percent(lost) +
+    throw InputError(s.asset.where, s.name() + "the grid loses " + percent(lost) +
                                         " of the particles' mass (to the cutoff " +
                                         percent(m.lostToCutoff / m.alive) + ", to half precision " +
                                         percent(m.lostToHalf / m.alive) + ", outside the box " +

@@ -40,6 +40,15 @@ class ParticleRun {
   /// mass_tolerance, WorldError where a checkpoint cannot be written.
   ParticleFrame frame(std::optional<int> frame);
 
+  /// Brings the particles to `frame` and splats nothing; returns the steps that it took. Throws as frame().
+  uint64_t moveTo(std::optional<int> frame);
+  /// The particles as they are, splatted with the voxel size, precision and cutoff of `look`, an asset like
+  /// the run's own. Throws InputError on particles that cannot be splatted.
+  Splatted splatted(const Asset& look) const;
+
+  /// The box of the particles as they are, with their radii; empty where there are none.
+  Box extent() const;
+
   /// The points of the last frame, as files of points hold them.
   void writePointsBeside(const std::string& vdbFile) const;
 

@@ -7,11 +7,12 @@
 #include <set>
 #include <tuple>
 
-#include "bake/pipeline_identity.h"
 #include "bake/field_specs.h"
 #include "bake/fields/motion.h"
+#include "bake/pipeline_identity.h"
 #include "bake/pipeline_particles.h"
 #include "base/hash.h"
+#include "base/tolerance.h"
 #include "base/version.h"
 #include "base/yaml.h"
 
@@ -164,6 +165,29 @@ void readContent(yaml::MapReader& reader, const std::string& what, const std::st
               key == std::string("velocity") ? "particles take 'grids: [vel]'" : "");
 }
 
+/// `voxel_size` or `tolerance`, exactly one of them.
+void readTolerance(yaml::MapReader& reader, const std::string& what, Asset& asset, Diagnostics& out) {
+  const yaml::NodePtr node = reader.find("tolerance");
+  if (!node) {
+    if (!reader.has("voxel_size")) out.add(asset.where, what + " needs 'voxel_size' or 'tolerance'");
+    return;
+  }
+  if (reader.has("voxel_size")) {
+    out.add(reader.where("tolerance"), what + " gives both 'voxel_size' and 'tolerance'; give one of them");
+    return;
+  }
+  const auto text = yaml::readText(*node, "'tolerance'", out);
+  if (!text) return;
+  try {
+    asset.tolerance = parseTolerance(*text);
+  } catch (const InputError& error) {
+    for (const Diagnostic& d : error.diagnostics()) out.add(node->where, d.sentence, d.hint);
+    return;
+  }
+  if (!(*asset.tolerance > 0.0 && *asset.tolerance < 1.0))
+    out.add(node->where, "'tolerance' must lie between 0 and 100%, ends excluded");
+}
+
 Asset readAsset(const yaml::Entry& entry, const std::string& folder, FieldReader& fields, Diagnostics& out) {
   Asset asset;
   asset.name = entry.key;
@@ -180,16 +204,11 @@ Asset readAsset(const yaml::Entry& entry, const std::string& folder, FieldReader
   asset.voxelSize = reader.number("voxel_size", 0.0, kPositive);
   asset.precision =
       reader.choice("precision", "half", {"half", "float"}) == "half" ? Precision::half : Precision::single;
+  asset.precisionGiven = reader.has("precision");
   asset.cutoff = reader.number("cutoff", asset.cutoff, kNonNegative);
   readFrames(reader, asset, out);
   readLoop(reader, asset, out);
-  const bool tolerance = reader.find("tolerance") != nullptr;
-  if (tolerance && reader.has("voxel_size"))
-    out.add(reader.where("tolerance"), what + " gives both 'voxel_size' and 'tolerance'; give one of them");
-  else if (tolerance)
-    out.add(reader.where("tolerance"), "'tolerance' is not built yet", "give 'voxel_size'");
-  else if (!reader.has("voxel_size"))
-    out.add(entry.where, what + " needs 'voxel_size'");
+  readTolerance(reader, what, asset, out);
   readContent(reader, what, folder, fields, asset, out);
   readVelocity(reader, asset, fields, out);
   checkLoop(asset, out);
@@ -311,6 +330,7 @@ FieldPtr buildField(const FieldSpec& spec, const BuildContext& context) {
 BuildContext contextOf(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame) {
   BuildContext context;
   context.voxelSize = asset.voxelSize;
+  context.mostOctaves = asset.mostOctaves;
   context.upAxis = pipeline.upAxis == 'y' ? 1 : 2;
   context.seed = uint32_t(pipeline.seed);
   if (frame) context.time = *frame / asset.fps;
@@ -334,6 +354,10 @@ std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::option
   hasher.value(pipeline.upAxis);
   hasher.value(pipeline.seed);
   hasher.value(asset.voxelSize);
+  if (asset.tolerance) {
+    hasher.value(*asset.tolerance);
+    hasher.value(int(asset.precisionGiven));
+  }
   hasher.value(int(asset.precision));
   hasher.value(asset.cutoff);
   const BuildContext context = contextOf(pipeline, asset, frame);

@@ -39,7 +39,10 @@ struct FrameRange {
 struct Asset {
   std::string name;
   SourceLocation where;
-  double voxelSize = 0.0;  // world units
+  double voxelSize = 0.0;  // world units; 0 where a tolerance stands in its place
+  std::optional<double> tolerance;
+  bool precisionGiven = false;
+  int mostOctaves = kAllOctaves;  // of a fractal sum
   Precision precision = Precision::half;
   double cutoff = 0.001;  // voxels at or below are inactive and 0
   std::optional<FrameRange> frames;

@@ -40,6 +40,29 @@ Json massJson(const MassLedger& m) {
           {"particles_alive", m.countAlive}};
 }
 
+std::string precisionName(Precision precision) { return precision == Precision::half ? "half" : "float"; }
+
+/// Errors are the largest difference of optical depth over the largest depth, against half the voxel size.
+Json toleranceJson(const Choice& choice) {
+  const auto octaves = [](int most) { return most == kAllOctaves ? Json(nullptr) : Json(most); };
+  Json tried = Json::array();
+  for (const ChoiceTrial& trial : choice.trials)
+    tried.push_back({{"voxel_size", trial.voxelSize},
+                     {"precision", precisionName(trial.precision)},
+                     {"most_octaves", octaves(trial.mostOctaves)},
+                     {"error", trial.error},
+                     {"voxels_active", trial.voxelsActive}});
+  return {{"asked", choice.asked},
+          {"measured", choice.measured},
+          {"rays", choice.rays},
+          {"voxel_size", choice.asset.voxelSize},
+          {"precision", precisionName(choice.asset.precision)},
+          {"most_octaves", octaves(choice.asset.mostOctaves)},
+          {"tried", tried},
+          {"left_out", choice.leftOut},
+          {"seconds", choice.seconds}};
+}
+
 }  // namespace
 
 std::string reportAsJson(const std::vector<BakeRecord>& records) {
@@ -77,6 +100,7 @@ std::string reportAsJson(const std::vector<BakeRecord>& records) {
         entry["velocity"]["seconds"] = record.secondsVelocity;
       }
     }
+    if (record.choice) entry["tolerance"] = toleranceJson(*record.choice);
     if (record.loopFrames) entry["loop"] = loopJson(record);
     assets.push_back(std::move(entry));
   }

@@ -53,8 +53,10 @@ bool isUpToDate(const BakeJob& job, const std::string& hash) {
   }
 }
 
-Provenance provenanceOf(const Pipeline& pipeline, const BakeJob& job, const std::string& hash) {
+Provenance provenanceOf(const Pipeline& pipeline, const BakeJob& job, const std::string& hash,
+                        const Choice* choice) {
   Provenance provenance;
+  if (choice) provenance.tolerance = choiceAsText(*choice);
   provenance.upAxis = pipeline.upAxis;
   provenance.recipeHash = hash;
   provenance.seed = pipeline.seed;
@@ -141,7 +143,7 @@ void warnOf(const std::string& file, int longestAxis, uint64_t voxelsActive) {
 }
 
 BakeRecord bakeParticles(const Pipeline& pipeline, const BakeJob& job, const std::string& hash,
-                         ParticleRun& run) {
+                         const Choice* choice, ParticleRun& run) {
   BakeRecord record;
   const ParticleFrame frame = run.frame(job.frame);
   record.secondsSimulate = frame.secondsSimulate;
@@ -154,7 +156,7 @@ BakeRecord bakeParticles(const Pipeline& pipeline, const BakeJob& job, const std
   start = std::chrono::steady_clock::now();
   // Points first: the grid's presence says that all of the frame is there.
   run.writePointsBeside(job.file);
-  record.bytes = writeSplatted(job.file, frame.splatted, provenanceOf(pipeline, job, hash));
+  record.bytes = writeSplatted(job.file, frame.splatted, provenanceOf(pipeline, job, hash, choice));
   record.secondsWrite = secondsSince(start);
   record.voxelsActive = frame.splatted.voxelsActive;
   record.gridBytes = frame.splatted.gridBytes;
@@ -165,7 +167,8 @@ BakeRecord bakeParticles(const Pipeline& pipeline, const BakeJob& job, const std
   return record;
 }
 
-BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::string& hash, bool quiet) {
+BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::string& hash,
+                   const Choice* choice, bool quiet) {
   BakeRecord record;
   BuildContext context = contextOf(pipeline, *job.asset, job.frame);
   context.notes = &record.bandLimit;
@@ -191,7 +194,7 @@ BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::stri
     record.secondsVelocity = secondsSince(start);
   }
   start = std::chrono::steady_clock::now();
-  record.bytes = writeDensity(job.file, voxelized, provenanceOf(pipeline, job, hash),
+  record.bytes = writeDensity(job.file, voxelized, provenanceOf(pipeline, job, hash, choice),
                               velocities ? &*velocities : nullptr);
   record.secondsWrite = secondsSince(start);
   record.voxelsActive = voxelized.voxelsActive;
@@ -238,6 +241,19 @@ void tell(const BakeRecord& record) {
     std::cerr << "  loop of " << *record.loopFrames << " frames: largest difference "
               << record.seam->largestDifference << " between frames " << *record.frame << " and "
               << record.seam->frame << '\n';
+}
+
+/// What the asset's tolerance chooses, measured once.
+const Choice& settle(const Pipeline& pipeline, const Asset& asset, const BakeOptions& options,
+                     std::map<const Asset*, Choice>& choices) {
+  if (const auto known = choices.find(&asset); known != choices.end()) return known->second;
+  const Choice& choice = choices[&asset] = chooseFor(pipeline, asset, options.outFolder);
+  if (!options.quiet) {
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, " (%.1f s)", choice.seconds);
+    std::cerr << asset.name << ": " << choiceAsText(choice) << seconds << '\n';
+  }
+  return choice;
 }
 
 void makeFolder(const std::string& folder) {
@@ -287,19 +303,26 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
   removeLeftovers(options.outFolder);
   std::vector<BakeRecord> records;
   std::map<const Asset*, std::unique_ptr<ParticleRun>> runs;
-  for (const BakeJob& job : jobs) {
+  std::map<const Asset*, Choice> choices;
+  for (BakeJob job : jobs) {
     const std::string hash = recipeHash(pipeline, *job.asset, job.frame);
+    const Choice* choice = nullptr;
     BakeRecord record;
     if (!options.force && isUpToDate(job, hash)) {
       record.skipped = true;
       if (options.describeSkipped) describe(job.file, record);
-    } else if (job.asset->particles) {
-      auto& run = runs[job.asset];
-      if (!run) run = std::make_unique<ParticleRun>(pipeline, *job.asset, options.outFolder);
-      record = bakeParticles(pipeline, job, hash, *run);
     } else {
-      record = bakeOne(pipeline, job, hash, options.quiet);
+      if (job.asset->tolerance) choice = &settle(pipeline, *job.asset, options, choices);
+      if (choice) job.asset = &choice->asset;
+      if (job.asset->particles) {
+        auto& run = runs[job.asset];
+        if (!run) run = std::make_unique<ParticleRun>(pipeline, *job.asset, options.outFolder);
+        record = bakeParticles(pipeline, job, hash, choice, *run);
+      } else {
+        record = bakeOne(pipeline, job, hash, choice, options.quiet);
+      }
     }
+    if (choice) record.choice = *choice;
     record.name = job.asset->name;
     record.file = job.file;
     record.frame = job.frame;

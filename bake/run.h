@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/choice.h"
 #include "bake/particle_run.h"
 #include "bake/pipeline.h"
 
@@ -60,6 +61,7 @@ struct BakeRecord {
   std::vector<LoopNote> loopNotes;
   std::optional<MassLedger> ledger;  // of particles
   double secondsSimulate = 0.0;
+  std::optional<Choice> choice;  // of an asset with a tolerance; none where the file was up to date
   std::optional<LoopSeam> seam;  // measured with the asset's first frame; none where that was up to date
 };
 

@@ -351,6 +351,10 @@ std::string contentHashOf(const Splatted& splatted, const std::string& name) {
   return name.empty() ? joined.hex() : std::string();
 }
 
+BrickVolume bricksOf(const Splatted& splatted) {
+  return bricksFromGrid(static_cast<const openvdb::FloatGrid&>(*splatted.grids->all.front()));
+}
+
 uint64_t writeSplatted(const std::string& path, const Splatted& splatted, const Provenance& provenance) {
   Provenance complete = provenance;
   complete.mass = splatted.ledger.stored;

@@ -13,6 +13,7 @@
 
 #include "bake/fields/field.h"
 #include "particles/particles.h"
+#include "volume/bricks.h"
 #include "volume/provenance.h"
 
 namespace nephele {
@@ -72,6 +73,9 @@ Splatted splat(const SplatParticles& particles, const SplatSettings& settings);
 /// Content hash (volume/vdb_file.h) of the grid of that name, or of all grids joined; 32 hex digits, empty
 /// where there is no such grid.
 std::string contentHashOf(const Splatted& splatted, const std::string& grid = {});
+
+/// The density as plain bricks.
+BrickVolume bricksOf(const Splatted& splatted);
 
 /// Writes the grids to `path`, whole or not at all; returns the file's size in bytes. Throws WorldError.
 uint64_t writeSplatted(const std::string& path, const Splatted& splatted, const Provenance& provenance);

@@ -216,6 +216,8 @@ Voxelized voxelize(const Field& field, const VoxelizeSettings& settings, const L
 
 std::string contentHashOf(const Voxelized& voxelized) { return contentHash(*voxelized.grid->grid); }
 
+BrickVolume bricksOf(const Voxelized& voxelized) { return bricksFromGrid(*voxelized.grid->grid); }
+
 uint64_t writeDensity(const std::string& path, const Voxelized& voxelized, const Provenance& provenance,
                       const Velocities* velocities) {
   Provenance complete = provenance;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "bake/fields/field.h"
+#include "volume/bricks.h"
 #include "volume/provenance.h"
 
 namespace nephele {
@@ -49,6 +50,9 @@ Voxelized voxelize(const Field& field, const VoxelizeSettings& settings, const L
 
 /// The grid's content hash (volume/vdb_file.h), 32 hex digits.
 std::string contentHashOf(const Voxelized& voxelized);
+
+/// The grid as plain bricks.
+BrickVolume bricksOf(const Voxelized& voxelized);
 
 /// The largest |density difference| over all voxels. 0 where the grids' voxels and values are the same.
 double largestDifference(const Voxelized& a, const Voxelized& b);

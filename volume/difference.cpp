@@ -115,7 +115,7 @@ dvec3 onSphere(std::mt19937_64& random) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-Sums overRays(const BrickVolume& a, const BrickVolume& b, uint64_t rays) {
+Sums overRays(const BrickVolume& a, const BrickVolume& b, uint64_t rays, uint64_t seed) {
   dvec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
   growBox(a, low, high);
   growBox(b, low, high);
@@ -125,7 +125,8 @@ Sums overRays(const BrickVolume& a, const BrickVolume& b, uint64_t rays) {
   const double radius = 0.5 * glm::length(high - low);
   std::vector<Sums> parts(rays);
   tbb::parallel_for(uint64_t(0), rays, [&](uint64_t n) {
-    std::mt19937_64 random(n);
+    constexpr int kRayBits = 32;
+    std::mt19937_64 random(seed << kRayBits | n);
     const dvec3 from = centre + radius * onSphere(random), to = centre + radius * onSphere(random);
     const double depthA = depthAlong(a, from, to), depthB = depthAlong(b, from, to);
     parts[n].largest = std::abs(depthA - depthB);
@@ -143,9 +144,16 @@ double relative(double difference, double to) {
 
 }  // namespace
 
+double DepthDifference::relative() const { return nephele::relative(largest, largestA); }
 double GridDifference::relativeDensity() const { return relative(largest, maximumA); }
 double GridDifference::relativeDepth() const { return relative(largestDepth, largestDepthA); }
 double GridDifference::relativeVelocity() const { return relative(largestVelocity, largestSpeedA); }
+
+DepthDifference depthDifference(const BrickVolume& a, const BrickVolume& b, uint64_t rays, uint64_t seed) {
+  const Sums depths = overRays(a, b, rays, seed);
+  return {rays, depths.largestFirst, depths.largest,
+          rays > 0 ? std::sqrt(depths.squares / double(rays)) : 0.0};
+}
 
 GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t rays) {
   GridDifference d;
@@ -164,11 +172,11 @@ GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t r
   d.largest = samples.largest;
   const uint64_t counted = samples.both + samples.onlyFirst + samples.onlySecond;
   d.rms = counted > 0 ? std::sqrt(samples.squares / double(counted)) : 0.0;
-  const Sums depths = overRays(a, b, rays);
+  const DepthDifference depths = depthDifference(a, b, rays);
   d.rays = rays;
-  d.largestDepthA = depths.largestFirst;
+  d.largestDepthA = depths.largestA;
   d.largestDepth = depths.largest;
-  d.rmsDepth = rays > 0 ? std::sqrt(depths.squares / double(rays)) : 0.0;
+  d.rmsDepth = depths.rms;
   return d;
 }
 

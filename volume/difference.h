@@ -35,6 +35,21 @@ struct GridDifference {
   double relativeVelocity() const;
 };
 
+/// Optical depths of B against A along random chords.
+struct DepthDifference {
+  uint64_t rays = 0;
+  double largestA = 0.0;  // of all rays, world units for a medium of unit extinction
+  double largest = 0.0;   // largest |difference|
+  double rms = 0.0;
+
+  /// The largest difference over A's largest depth: 0 where both are 0, infinite where only A's is.
+  double relative() const;
+};
+
+/// Along `rays` random chords of the common box (uniform ends on its bounding sphere); each seed has its own.
+/// Same result on any number of threads.
+DepthDifference depthDifference(const BrickVolume& a, const BrickVolume& b, uint64_t rays, uint64_t seed = 0);
+
 /// Compares over all samples of both grids and along `rays` random chords of their common box (uniform ends
 /// on its bounding sphere, fixed seed). Same result on any number of threads.
 GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t rays = 10000);

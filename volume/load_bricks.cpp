@@ -305,6 +305,29 @@ void readUpAxis(BrickVolume& volume) {
     volume.notes.push_back("the metadata's up_axis '" + up->second + "' is neither y nor z; z is up");
 }
 
+/// Everything but what only a file can tell.
+void fillFrom(const std::string& path, const FloatGrid& grid, BrickVolume& volume) {
+  volume.path = path;
+  volume.worldFromIndex = affineOf(path, grid);
+  if (grid.background() != 0.0f) {
+    std::ostringstream note;
+    note << "grid '" << volume.gridName << "' has a background of " << grid.background()
+         << "; it counts as 0";
+    volume.notes.push_back(note.str());
+  }
+  const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  if (!box.empty()) {
+    volume.activeMin = {box.min().x(), box.min().y(), box.min().z()};
+    volume.activeMax = glm::ivec3(box.max().x(), box.max().y(), box.max().z()) + 1;
+  }
+  const Contents contents = contentsOf(grid);
+  examineValues(path, grid, contents, volume);
+  markCandidates(path, contents, volume);
+  buildBricks(volume, TreeSource(grid));
+  if (volume.empty())
+    volume.notes.push_back("grid '" + volume.gridName + "' is empty: there is no density to show");
+}
+
 }  // namespace
 
 bool hasFloatGrid(const std::string& path, const std::string& gridName) {
@@ -315,27 +338,16 @@ bool hasFloatGrid(const std::string& path, const std::string& gridName) {
 
 BrickVolume loadBricks(const std::string& path, const std::string& gridName) {
   BrickVolume volume;
-  volume.path = path;
   const FloatGrid::Ptr grid = readGrid(path, gridName, volume);
   readUpAxis(volume);
-  volume.worldFromIndex = affineOf(path, *grid);
-  if (grid->background() != 0.0f) {
-    std::ostringstream note;
-    note << "grid '" << volume.gridName << "' has a background of " << grid->background()
-         << "; it counts as 0";
-    volume.notes.push_back(note.str());
-  }
-  const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
-  if (!box.empty()) {
-    volume.activeMin = {box.min().x(), box.min().y(), box.min().z()};
-    volume.activeMax = glm::ivec3(box.max().x(), box.max().y(), box.max().z()) + 1;
-  }
-  const Contents contents = contentsOf(*grid);
-  examineValues(path, *grid, contents, volume);
-  markCandidates(path, contents, volume);
-  buildBricks(volume, TreeSource(*grid));
-  if (volume.empty())
-    volume.notes.push_back("grid '" + volume.gridName + "' is empty: there is no density to show");
+  fillFrom(path, *grid, volume);
+  return volume;
+}
+
+BrickVolume bricksFromGrid(const openvdb::FloatGrid& grid) {
+  BrickVolume volume;
+  volume.gridName = grid.getName();
+  fillFrom("", grid, volume);
   return volume;
 }
 

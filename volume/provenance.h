@@ -20,6 +20,7 @@ struct Provenance {
   std::array<double, 3> sigmaA{};
   double g = 0.0;
   std::string particles;  // the recipe's particle block as YAML; empty where a density made the grid
+  std::string tolerance;  // what a tolerance chose, measured and left out; empty where the recipe has none
   std::optional<double> mass;  // Σ of stored densities · voxel volume, density units · world units³
 };
 

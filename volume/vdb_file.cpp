@@ -25,6 +25,8 @@ openvdb::MetaMap metadataOf(const Provenance& provenance) {
   if (provenance.frame) metadata.insertMeta("frame", openvdb::Int32Metadata(*provenance.frame));
   if (!provenance.particles.empty())
     metadata.insertMeta("particles", openvdb::StringMetadata(provenance.particles));
+  if (!provenance.tolerance.empty())
+    metadata.insertMeta("tolerance", openvdb::StringMetadata(provenance.tolerance));
   if (provenance.mass) metadata.insertMeta("mass", openvdb::DoubleMetadata(*provenance.mass));
   if (provenance.hasMedium) {
     const auto vector = [](const std::array<double, 3>& a) { return openvdb::Vec3d(a[0], a[1], a[2]); };

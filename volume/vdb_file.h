@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "volume/bricks.h"
 #include "volume/provenance.h"
 
 namespace nephele {
@@ -40,6 +41,10 @@ VdbContents readVdb(const std::string& path);
 /// it is whole. Throws as readVdb does; what OpenVDB throws inside `body` becomes an InputError that names
 /// the file.
 void withVdbFile(const std::string& path, const std::function<void(openvdb::io::File& file)>& body);
+
+/// The brick arrays of a float grid in memory, as loadBricks() makes them of a file. Throws as that does for
+/// values and transforms, without a path.
+BrickVolume bricksFromGrid(const openvdb::FloatGrid& grid);
 
 /// Metadata as text: numbers with all their digits, vectors as "[x, y, z]", other types as OpenVDB prints
 /// them.

@@ -59,7 +59,7 @@ std::vector<NoiseOctave> fbmOctaves(const Fractal& fractal, const BuildContext& 
   double cells = double(fractal.period);
   const Motion motion = fractal.motion();
   for (int64_t i = 0; i < fractal.octaves; ++i) {
-    const double kept = bandLimit(size / context.voxelSize);
+    const double kept = i < context.mostOctaves ? bandLimit(size / context.voxelSize) : 0.0;
     if (kept < 1.0 && context.notes)
       context.notes->push_back({field, int(i), size / context.voxelSize, kept});
     if (kept > 0.0) {

@@ -56,6 +56,9 @@ struct BandLimitNote {
   double squeeze = 0.0;     // above 0: a warp, and how many times finer (rms) it makes what it displaces
 };
 
+/// More octaves than any field has.
+inline constexpr int kAllOctaves = 1 << 20;
+
 /// A motion that comes round after `frames` frames, and how far it is.
 struct Loop {
   int64_t frames = 1;  // at least 1
@@ -79,7 +82,8 @@ struct BuildContext {
   uint32_t seed = 0;       // the recipe's; mixed with each field's own
   std::vector<BandLimitNote>* notes = nullptr;
   double time = 0.0;           // seconds since frame 0
-  std::optional<Loop> loop{};  // then motion follows this in place of the time
+  int mostOctaves = kAllOctaves;  // of a fractal sum; the rest is left out as if the grid could not hold it
+  std::optional<Loop> loop{};     // then motion follows this in place of the time
 };
 
 /// Parameters by name, all present, all in range.

@@ -146,7 +146,7 @@ TEST(Pipeline, RefusesWhatIsContradictoryOrNotBuilt) {
   EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, tolerance: 3%, density: 1 } }")
                 .find("both 'voxel_size' and 'tolerance'"),
             std::string::npos);
-  EXPECT_NE(onlyComplaint("assets: { a: { tolerance: 3%, density: 1 } }").find("not built yet"),
+  EXPECT_NE(onlyComplaint("assets: { a: { tolerance: 120%, density: 1 } }").find("between 0 and 100%"),
             std::string::npos);
   EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, particles: {} } }").find("at least one of 'emitters'"),
             std::string::npos);

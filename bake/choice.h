@@ -1,0 +1,55 @@
+// `tolerance` in place of a voxel size: the coarsest voxels, half or float, and the fewest octaves whose
+// optical depths stay within it of the same recipe at half the voxel size. Depends on pipeline, trial,
+// volume's difference; no OpenVDB.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/pipeline.h"
+
+namespace nephele {
+
+/// One bake that was held against the same recipe at half its voxel size, float, all octaves: the worst of
+/// the frames measured.
+struct ChoiceTrial {
+  double voxelSize = 0.0;
+  Precision precision = Precision::single;
+  int mostOctaves = kAllOctaves;
+  double error = 0.0;  // largest depth difference over the largest depth
+  uint64_t voxelsActive = 0;
+};
+
+struct Choice {
+  Asset asset;            // the recipe's, with what was chosen
+  double asked = 0.0;     // the recipe's tolerance
+  double measured = 0.0;  // of what was chosen
+  uint64_t rays = 0;
+  std::vector<std::optional<int>> frames;  // that were measured
+  std::vector<ChoiceTrial> trials;         // in the order they were made
+  std::vector<std::string> leftOut;        // sentences
+  double seconds = 0.0;
+};
+
+/// Rays that a choice is measured along, and the share of the tolerance that it may use up: the largest
+/// difference of other rays lies a little higher.
+inline constexpr uint64_t kChoiceRays = 10000;
+inline constexpr double kChoiceShare = 0.8;
+
+/// Chooses for an asset with a tolerance: halves the voxels until the tolerance holds, bisects between the
+/// last two sizes, then takes half precision and octaves away where that keeps it. Sequences are measured at
+/// their first, middle and last frame. The same on any number of threads and for any part of the frames.
+/// Throws InputError where the tolerance asks for more voxels than is measured, saying what was reached, and
+/// where the asset cannot be baked.
+Choice chooseFor(const Pipeline& pipeline, const Asset& asset, const std::string& outFolder);
+
+/// One line: what was asked, chosen, measured and left out; the file's metadata holds it.
+std::string choiceAsText(const Choice& choice);
+
+/// The largest depth difference along `rays` rays of `seed` between two looks of an asset, over the largest
+/// depth of `reference`; the worst of the asset's sampled frames.
+double depthError(const Pipeline& pipeline, const Asset& reference, const Asset& look, uint64_t rays,
+                  uint64_t seed, const std::string& outFolder);
+
+}  // namespace nephele

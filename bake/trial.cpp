@@ -1,0 +1,124 @@
+// Bakes in memory. Depends on trial.h, voxelize, particle_run.
+#include "bake/trial.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <set>
+
+#include "bake/particle_run.h"
+#include "bake/voxelize.h"
+
+namespace nephele {
+namespace {
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void raiseOctaves(const FieldSpec& spec, std::set<const FieldSpec*>& seen, int& most) {
+  if (!seen.insert(&spec).second) return;
+  if (const auto found = spec.values.find("octaves"); found != spec.values.end())
+    most = std::max(most, int(std::get<int64_t>(found->second)));
+  for (const auto& [name, children] : spec.children)
+    for (const FieldSpecPtr& child : children) raiseOctaves(*child, seen, most);
+}
+
+TrialBaker::Extent extentOf(const Box& box) {
+  const glm::dvec3 size = box.high - box.low;
+  const double longest = std::max({size.x, size.y, size.z}), shortest = std::min({size.x, size.y, size.z});
+  if (box.empty() || !std::isfinite(longest)) return {};
+  return {longest, shortest};
+}
+
+}  // namespace
+
+struct TrialBaker::State {
+  const Pipeline& pipeline;
+  const Asset& asset;
+  std::vector<std::optional<int>> frames;
+  std::vector<std::unique_ptr<ParticleRun>> runs;  // one a frame, there already
+
+  TrialBake bakeDensity(size_t frame, const Asset& look, const std::string& file) const {
+    TrialBake result;
+    BuildContext context = contextOf(pipeline, look, frames[frame]);
+    context.notes = &result.notes;
+    const auto start = std::chrono::steady_clock::now();
+    const FieldPtr field = buildField(*asset.density, context);
+    try {
+      const Voxelized voxelized =
+          voxelize(*field, {look.voxelSize, look.cutoff, look.precision == Precision::half});
+      if (!file.empty()) result.fileBytes = writeDensity(file, voxelized, Provenance{});
+      result.seconds = secondsSince(start);
+      result.voxelsActive = voxelized.voxelsActive;
+      result.gridBytes = voxelized.gridBytes;
+      result.bricks = bricksOf(voxelized);
+    } catch (const VoxelizeError& error) {
+      throw InputError(asset.where, "asset '" + asset.name + "': " + error.what());
+    }
+    return result;
+  }
+
+  TrialBake bakeParticles(size_t frame, const Asset& look, const std::string& file) const {
+    TrialBake result;
+    const auto start = std::chrono::steady_clock::now();
+    const Splatted splatted = runs[frame]->splatted(look);
+    if (!file.empty()) result.fileBytes = writeSplatted(file, splatted, Provenance{});
+    result.seconds = secondsSince(start);
+    result.voxelsActive = splatted.voxelsActive;
+    result.gridBytes = splatted.gridBytes;
+    result.bricks = bricksOf(splatted);
+    return result;
+  }
+};
+
+TrialBaker::TrialBaker(const Pipeline& pipeline, const Asset& asset, std::vector<std::optional<int>> frames,
+                       const std::string& outFolder)
+    : state_(new State{pipeline, asset, std::move(frames), {}}) {
+  if (!asset.particles) return;
+  for (const std::optional<int>& frame : state_->frames) {
+    state_->runs.push_back(std::make_unique<ParticleRun>(pipeline, asset, outFolder));
+    state_->runs.back()->moveTo(frame);
+  }
+}
+
+TrialBaker::~TrialBaker() = default;
+
+size_t TrialBaker::frameCount() const { return state_->frames.size(); }
+
+TrialBake TrialBaker::bake(size_t frame, const Asset& look, const std::string& file) const {
+  return state_->asset.particles ? state_->bakeParticles(frame, look, file)
+                                 : state_->bakeDensity(frame, look, file);
+}
+
+TrialBaker::Extent TrialBaker::extent() const {
+  Box all = nothing();
+  for (size_t n = 0; n < frameCount(); ++n) {
+    if (state_->asset.particles) {
+      all = hull(all, state_->runs[n]->extent());
+      continue;
+    }
+    BuildContext context = contextOf(state_->pipeline, state_->asset, state_->frames[n]);
+    context.voxelSize = 1.0;  // no support depends on it
+    all = hull(all, buildField(*state_->asset.density, context)->support());
+  }
+  return extentOf(all);
+}
+
+std::vector<std::optional<int>> sampledFrames(const Asset& asset) {
+  if (!asset.frames) return {std::nullopt};
+  const int first = asset.frames->first, last = asset.frames->last;
+  std::vector<std::optional<int>> frames;
+  for (const int frame : {first, first + (last - first) / 2, last})
+    if (frames.empty() || *frames.back() != frame) frames.emplace_back(frame);
+  return frames;
+}
+
+int largestOctaves(const Asset& asset) {
+  int most = 0;
+  std::set<const FieldSpec*> seen;
+  if (asset.density) raiseOctaves(*asset.density, seen, most);
+  return most;
+}
+
+}  // namespace nephele
