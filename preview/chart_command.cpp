@@ -26,6 +26,7 @@ Scene physicalScene(const std::string& path) {
   scene.look = Look::physical;
   scene.powder.on = false;
   scene.lightTransmittance = LightTransmittance::marched;
+  scene.march.levelPixels = 0.0;  // the small pictures stand for large ones, which resolve every voxel
   return scene;
 }
 

@@ -38,12 +38,31 @@ std::pair<int, int> parseFrames(const std::string& text) {
 /// The options as typed, before they are understood.
 struct Arguments {
   RenderOptions render;
-  std::string size = "960x540", windowSize = "1280x720", frames, error, filter = "hardware", tolerance;
+  std::string size = "960x540", windowSize = "1280x720", frames, error, filter = "hardware", tolerance, vram;
   std::string picture, reference, chartSize = "128x72";
   ChartOptions chart;
   double step = 0.0, exposure = 0.0;
   bool json = false;
 };
+
+/// "512M": a number and K, M or G, powers of 1024; at least a byte.
+uint64_t parseBytes(const std::string& option, const std::string& text) {
+  constexpr double kKibi = 1024.0, kMost = 1e15;
+  size_t used = 0;
+  double bytes = 0.0;
+  try {
+    bytes = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  const std::string unit = text.substr(used);
+  const size_t power = unit.empty() ? 0 : std::string("KMG").find(unit[0]) + 1;
+  bytes *= std::pow(kKibi, static_cast<double>(power));
+  const bool known = unit.empty() || (unit.size() == 1 && power > 0);
+  if (used == 0 || !known || !(bytes >= 1.0 && bytes < kMost))
+    throw InputError({}, option + " should be a size as in 512M or 2G, found '" + text + "'");
+  return static_cast<uint64_t>(bytes);
+}
 
 void addRenderOptions(CLI::App& app, Arguments& a) {
   app.add_option("FILE", a.render.file, "The .vdb to show");
@@ -73,6 +92,10 @@ void addRenderOptions(CLI::App& app, Arguments& a) {
   app.add_option("--filter", a.filter, "How densities are read between samples")
       ->capture_default_str()
       ->check(CLI::IsMember({"exact", "hardware"}));
+  app.add_option(
+      "--vram", a.vram,
+      "Limit of GPU memory for bricks, index, light cache and picture, as in 512M or 2G (default: none); "
+      "beyond it bricks come from coarser levels");
   app.add_option("--frames", a.frames, "Render frames A-B, both included, or one frame, to OUT_####");
 }
 
@@ -105,6 +128,7 @@ int renderOrShow(Arguments& a, bool renderGiven, bool stepGiven, bool exposureGi
     a.render.error = parseTolerance(a.error);
     if (!(a.render.error > 0.0)) throw InputError({}, "--error should be greater than 0");
   }
+  if (!a.vram.empty()) a.render.vramBytes = parseBytes("--vram", a.vram);
   if (stepGiven) a.render.stepVoxels = a.step;
   if (exposureGiven) a.render.exposureEv = a.exposure;
   a.render.filter = a.filter == "exact" ? Filter::exact : Filter::hardware;

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/picture.h"
 #include "preview/filter.h"
@@ -20,6 +21,7 @@ namespace nephele {
 /// What is fixed while a method lives.
 struct MethodOptions {
   Filter filter = Filter::hardware;
+  uint64_t vramBytes = 0;  // of GPU memory at most; 0: as much as there is
 };
 
 /// One picture to make.
@@ -49,6 +51,8 @@ struct PictureCost {
   uint64_t gpuBytes = 0;                // bricks, index, light cache, picture, parameters
   uint64_t volumeBytes = 0;             // the same without the picture
   std::string texel;                    // of the atlas: "r8", "r16f", "r32f"; empty where there is none
+  std::vector<size_t> bricksOfLevel;    // bricks with density read from each level, finest first
+  double voxelPixels = 0.0;             // that voxels were allowed to cover when levels were chosen
   double relativeError = 0.0;           // the picture's own noise as relative RMSE, where the method knows it
 };
 

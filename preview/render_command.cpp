@@ -128,6 +128,8 @@ void writeStats(const std::string& path, const Totals& totals, const Method& met
                                {"gpu_bytes", totals.cost.gpuBytes},
                                {"gpu_volume_bytes", totals.cost.volumeBytes},
                                {"gpu_texel", totals.cost.texel},
+                               {"bricks_of_level", totals.cost.bricksOfLevel},
+                               {"voxel_pixels", totals.cost.voxelPixels},
                                {"gl_renderer", method.renderer},
                                {"seconds_driver", method.secondsDriver},
                                {"seconds_shaders", method.secondsShaders},
@@ -163,7 +165,7 @@ class Sequence {
       view_ = resolveScene(scene_, bricks, static_cast<double>(options_.width) / options_.height, sentence);
       std::cerr << sentence << '\n' << describeLight(*view_) << '\n';
       if (isReference()) tellWhatIsLeftOut();
-      method_ = row_.make({options_.filter});
+      method_ = row_.make({options_.filter, options_.vramBytes});
     }
     method_->setVolume(bricks);
     PictureCost cost;
@@ -178,6 +180,11 @@ class Sequence {
     totals_.cost.gpuBytes = std::max(totals_.cost.gpuBytes, cost.gpuBytes);
     totals_.cost.volumeBytes = std::max(totals_.cost.volumeBytes, cost.volumeBytes);
     totals_.cost.texel = cost.texel;
+    totals_.cost.bricksOfLevel = cost.bricksOfLevel;
+    totals_.cost.voxelPixels = cost.voxelPixels;
+    if (cost.voxelPixels > view_->scene.march.levelPixels)
+      std::cerr << "levels: GPU memory or textures end before the picture is resolved; voxels cover up to "
+                << cost.voxelPixels << " pixels\n";
   }
 
   /// Writes the stats of the frames that were rendered, where there are any.

@@ -2,6 +2,7 @@
 // volume, base.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,6 +31,7 @@ struct RenderOptions {
   std::optional<double> exposureEv;  // none: 0 with a scene, chosen from the picture without
   bool aov = false;
   Filter filter = Filter::hardware;
+  uint64_t vramBytes = 0;      // limit of GPU memory; 0: none
   std::optional<int> bounces;  // scatterings after the first, for methods that count them; none: all
   double error = 0.0;          // above 0: relative RMSE that the picture's noise may have
   std::optional<std::pair<int, int>> frames;  // both ends included

@@ -161,6 +161,7 @@ struct MarchSettings {
   int cacheNearSteps = 4;         // in so many steps, from 0 to 16
   double giveUp = 1e-4;           // transmittance below which a ray ends, in (0, 0.1]
   AtlasPrecision precision = AtlasPrecision::automatic;
+  double levelPixels = 1.0;  // voxels that cover at most so many come from coarser levels; 0: none do
   bool operator==(const MarchSettings&) const = default;
 };
 

@@ -5,6 +5,11 @@ layout(binding = 2) uniform usampler2D blockIndex; // of the light cache's block
 layout(binding = 3) uniform sampler3D columnCache;
 layout(binding = 5) uniform sampler3D skyCache;    // two halves along z
 
+// Whether bricks are of several levels.
+#ifndef NPH_LEVELS
+#define NPH_LEVELS false
+#endif
+
 // Whether the atlas's texels are shares of their brick's bound.
 #ifndef NPH_SCALED
 #define NPH_SCALED false

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
+#include <unordered_map>
 
 #include "base/error.h"
 #include "volume/brick_packing.h"
@@ -23,7 +25,7 @@ constexpr int kMostEmptyLevel = 15;  // more bricks than any index is long
 int64_t divideUp(int64_t a, int64_t b) { return (a + b - 1) / b; }
 
 /// Places along each axis, at most `most`: nearly a cube, of those the one that leaves the least unused.
-glm::ivec3 placesFor(size_t needed, const glm::ivec3& most) {
+std::optional<glm::ivec3> placesFor(size_t needed, const glm::ivec3& most) {
   const int64_t count = std::max<int64_t>(static_cast<int64_t>(needed), 1);
   const int edge = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(count))));
   constexpr int kReach = 6;  // the longer the reach, the flatter boxes are looked at
@@ -39,10 +41,7 @@ glm::ivec3 placesFor(size_t needed, const glm::ivec3& most) {
       }
       if (x <= edge - kReach) break;
     }
-  if (least == 0)
-    throw InputError({}, "the grid needs " + std::to_string(count) +
-                             " blocks of cached light, more than the driver's 3-D textures hold (" +
-                             std::to_string(int64_t{most.x} * most.y * most.z) + ")");
+  if (least == 0) return std::nullopt;
   return best;
 }
 
@@ -58,12 +57,12 @@ size_t at(const glm::ivec3& count, const glm::ivec3& p) {
 }
 
 /// Which aligned cubes of 2^L bricks hold density, from level 0 to the one that is a single cube.
-Levels occupancy(const BrickVolume& volume) {
+Levels occupancy(const BrickLayout& layout) {
   Levels levels;
-  levels.counts.push_back(volume.brickCount);
-  levels.full.emplace_back(volume.index.size());
-  std::transform(volume.index.begin(), volume.index.end(), levels.full[0].begin(),
-                 [](uint32_t slot) { return static_cast<uint8_t>(slot != 0); });
+  levels.counts.push_back(layout.frame.brickCount);
+  levels.full.emplace_back(layout.words.size());
+  std::transform(layout.words.begin(), layout.words.end(), levels.full[0].begin(),
+                 [](const glm::uvec2& word) { return static_cast<uint8_t>(!isEmpty(word)); });
   while (std::max({levels.counts.back().x, levels.counts.back().y, levels.counts.back().z}) > 1) {
     const glm::ivec3 below = levels.counts.back(), count = (below + 1) / 2;
     std::vector<uint8_t> full(at(count, {0, 0, count.z}), 0);
@@ -136,29 +135,56 @@ glm::uvec2 wordOf(const BrickSlot& slot, const SlotShape& shape) {
           corner.z | halves | shape.minimumShare << kMinimumShift};
 }
 
-/// Shapes, packs and names all bricks; returns the word of each of the volume's slots.
-std::vector<glm::uvec2> placeBricks(const BrickVolume& volume, int limitTexels, BrickLayout& layout) {
-  std::vector<SlotShape> shapes(volume.slotCount());
-  layout.maximum = keptAs(layout.texel == Texel::r8 ? Texel::r32f : layout.texel,
-                          static_cast<float>(volume.maximum), 0.0f);
-  tbb::parallel_for(size_t{0}, shapes.size(), [&](size_t slot) {
-    shapes[slot] = shapeOf(volume.samples.data() + slot * kBrickVolume, layout.texel, layout.maximum);
-  });
+using WordOfBrick = std::unordered_map<const float*, glm::uvec2>;
+
+/// Shapes, packs and names the distinct bricks of a cut; nothing where they do not fit.
+std::optional<WordOfBrick> placeBricks(const Cut& cut, int limitTexels, BrickLayout& layout) {
+  std::vector<const float*> bricks;
+  WordOfBrick words;
+  for (const CutBrick& brick : cut.bricks)
+    if (words.emplace(brick.samples, glm::uvec2(0u)).second) bricks.push_back(brick.samples);
+  std::vector<SlotShape> shapes(bricks.size());
+  tbb::parallel_for(size_t{0}, shapes.size(),
+                    [&](size_t slot) { shapes[slot] = shapeOf(bricks[slot], layout.texel, layout.maximum); });
   std::vector<glm::ivec3> sizes;
   for (const SlotShape& shape : shapes) sizes.push_back(shape.size);
-  const Packing packing = packBoxes(sizes, std::min<int>(limitTexels, kCornerMask + 1));
-  layout.size = packing.size;
-  std::vector<glm::uvec2> words(shapes.size());
-  for (const size_t slot : packing.order) {
+  const std::optional<Packing> packing = packBoxes(sizes, std::min<int>(limitTexels, kCornerMask + 1));
+  if (!packing) return std::nullopt;
+  layout.size = packing->size;
+  for (const size_t slot : packing->order) {
     const SlotShape& shape = shapes[slot];
-    layout.slots.push_back({volume.samples.data() + slot * kBrickVolume, packing.corners[slot], shape.first,
-                            shape.size, brick_bounds::bound(shape.maximumCode, layout.maximum)});
-    words[slot] = wordOf(layout.slots.back(), shape);
-    if (layout.slabs.empty() || layout.slabs.back().z != packing.corners[slot].z)
-      layout.slabs.push_back({packing.corners[slot].z, shape.size.z, layout.slots.size() - 1, 0});
+    layout.slots.push_back({bricks[slot], packing->corners[slot], shape.first, shape.size,
+                            brick_bounds::bound(shape.maximumCode, layout.maximum)});
+    words[bricks[slot]] = wordOf(layout.slots.back(), shape);
+    if (layout.slabs.empty() || layout.slabs.back().z != packing->corners[slot].z)
+      layout.slabs.push_back({packing->corners[slot].z, shape.size.z, layout.slots.size() - 1, 0});
     ++layout.slabs.back().slotCount;
   }
   return words;
+}
+
+/// Every brick's word over all of the frame that it stands for, and the largest empty cubes.
+void writeWords(const Cut& cut, const WordOfBrick& words, BrickLayout& layout) {
+  const glm::ivec3 count = layout.frame.brickCount;
+  layout.words.assign(at(count, {0, 0, count.z}), glm::uvec2(0u));
+  for (const CutBrick& brick : cut.bricks) {
+    glm::uvec2 word = words.at(brick.samples);
+    word.y |= static_cast<uint32_t>(brick.rise) << kLevelShift;
+    const glm::ivec3 first = brick.brick * (1 << brick.rise) - layout.frame.brickMin;
+    const glm::ivec3 last = glm::min(first + (1 << brick.rise), count);
+    for (int z = first.z; z < last.z; ++z)
+      for (int y = first.y; y < last.y; ++y)
+        std::fill_n(layout.words.begin() + static_cast<std::ptrdiff_t>(at(count, {first.x, y, z})),
+                    last.x - first.x, word);
+    ++layout.bricksOfLevel[static_cast<size_t>(layout.frame.level + brick.rise)];
+  }
+  const Levels levels = occupancy(layout);
+  tbb::parallel_for(0, count.z, [&](int z) {
+    for (int y = 0; y < count.y; ++y)
+      for (int x = 0; x < count.x; ++x)
+        if (glm::uvec2& word = layout.words[at(count, {x, y, z})]; isEmpty(word))
+          word.y = emptyLevel(levels, {x, y, z});
+  });
 }
 
 void writeRow(Texel texel, const float* samples, size_t count, float scale, std::byte* to) {
@@ -179,14 +205,16 @@ void writeRow(Texel texel, const float* samples, size_t count, float scale, std:
   }
 }
 
-void findBlocks(const BrickVolume& volume, int limitTexels, BrickLayout& layout) {
-  layout.blockCount = (layout.brickCount + kBlockBricks - 1) / kBlockBricks;
+/// False where the light cache's textures would not hold them.
+bool findBlocks(int limitTexels, BrickLayout& layout) {
+  const glm::ivec3 bricks = layout.frame.brickCount;
+  layout.blockCount = (bricks + kBlockBricks - 1) / kBlockBricks;
   const glm::ivec3 count = layout.blockCount;
   std::vector<uint8_t> full(at(count, {0, 0, count.z}), 0);
-  for (int z = 0; z < volume.brickCount.z; ++z)
-    for (int y = 0; y < volume.brickCount.y; ++y)
-      for (int x = 0; x < volume.brickCount.x; ++x)
-        if (volume.index[at(volume.brickCount, {x, y, z})] != 0)
+  for (int z = 0; z < bricks.z; ++z)
+    for (int y = 0; y < bricks.y; ++y)
+      for (int x = 0; x < bricks.x; ++x)
+        if (!isEmpty(layout.words[at(bricks, {x, y, z})]))
           full[at(count, {x / kBlockBricks, y / kBlockBricks, z / kBlockBricks})] = 1;
   for (int z = 0; z < count.z; ++z)
     for (int y = 0; y < count.y; ++y)
@@ -194,36 +222,69 @@ void findBlocks(const BrickVolume& volume, int limitTexels, BrickLayout& layout)
         if (full[at(count, {x, y, z})] != 0) layout.blocks.emplace_back(x, y, z);
   const int mostXy = std::min(limitTexels / kMostBlockSamples, 1 << kBlockPlaceBits);
   const int mostZ = std::max(1, limitTexels / (kMostBlockSamples * kMostCachedLights));
-  layout.blockPlaces = placesFor(layout.blocks.size(), {mostXy, mostXy, mostZ});
+  const std::optional<glm::ivec3> places = placesFor(layout.blocks.size(), {mostXy, mostXy, mostZ});
+  if (!places) return false;
+  layout.blockPlaces = *places;
   layout.blockWords.assign(full.size(), 0);
   const uint32_t nx = static_cast<uint32_t>(layout.blockPlaces.x),
                  ny = static_cast<uint32_t>(layout.blockPlaces.y);
   for (uint32_t i = 0; i < layout.blocks.size(); ++i)
     layout.blockWords[at(count, layout.blocks[i])] =
         1 + (i % nx | (i / nx % ny) << kBlockPlaceBits | (i / (nx * ny)) << (2 * kBlockPlaceBits));
+  return true;
+}
+
+/// A layout at one resolution; nothing where it takes more than the options allow.
+std::optional<BrickLayout> attempt(const BrickLevels& levels, const LayoutOptions& options) {
+  const Cut cut = cutFor(levels, options.resolution);
+  BrickLayout layout;
+  layout.texel = options.texel;
+  layout.frame = cut.frame;
+  layout.mostRise = cut.mostRise;
+  layout.pixels = options.resolution ? options.resolution->pixels : 0.0;
+  if (cut.bricks.empty()) return layout;
+  double maximum = 0.0;
+  for (int rise = 0; rise <= cut.mostRise; ++rise)
+    maximum = std::max(maximum, levels.at(cut.frame.level + rise).maximum);
+  layout.maximum = static_cast<float>(maximum);
+  if (layout.texel == Texel::r16f) layout.maximum = keptAs(layout.texel, layout.maximum, 0.0f);
+  const auto words = placeBricks(cut, options.limitTexels, layout);
+  if (!words) return std::nullopt;
+  writeWords(cut, *words, layout);
+  if (!findBlocks(options.limitTexels, layout)) return std::nullopt;
+  const uint64_t bytes = layout.bytes() + options.blockBytes * layout.blocks.size();
+  if (options.budgetBytes > 0 && bytes > options.budgetBytes) return std::nullopt;
+  return layout;
 }
 
 }  // namespace
 
+uint64_t BrickLayout::bytes() const {
+  return bytesOf(texel) * static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) *
+             static_cast<uint64_t>(size.z) +
+         sizeof(glm::uvec2) * words.size();
+}
+
+BrickLayout layOut(const BrickLevels& levels, const LayoutOptions& options) {
+  LayoutOptions tried = options;
+  constexpr double kLeastPixels = 0.5, kMostPixels = 1e4, kGrowth = 1.4142135623730951;
+  do {
+    if (std::optional<BrickLayout> layout = attempt(levels, tried)) return std::move(*layout);
+    if (tried.resolution)
+      tried.resolution->pixels = std::max(kLeastPixels, kGrowth * tried.resolution->pixels);
+  } while (tried.resolution && tried.resolution->pixels < kMostPixels);
+  const std::string voxels = std::to_string(levels.at(0).activeVoxels) + " voxels";
+  if (options.budgetBytes > 0)
+    throw InputError({levels.at(0).path}, "the grid's " + voxels + " do not fit into " +
+                                              std::to_string(options.budgetBytes) +
+                                              " bytes of GPU memory, even from its coarsest level");
+  throw InputError({levels.at(0).path}, "the grid's " + voxels + " are more than 3-D textures of " +
+                                            std::to_string(options.limitTexels) + " texels a side hold");
+}
+
 BrickLayout layOut(const BrickVolume& volume, const LayoutOptions& options) {
-  BrickLayout layout;
-  layout.texel = options.texel;
-  layout.brickCount = volume.brickCount;
-  if (volume.empty()) return layout;
-  const std::vector<glm::uvec2> words = placeBricks(volume, options.limitTexels, layout);
-  layout.words.resize(volume.index.size());
-  const Levels levels = occupancy(volume);
-  const glm::ivec3 count = volume.brickCount;
-  tbb::parallel_for(0, count.z, [&](int z) {
-    for (int y = 0; y < count.y; ++y)
-      for (int x = 0; x < count.x; ++x) {
-        const size_t i = at(count, {x, y, z});
-        layout.words[i] =
-            volume.index[i] == 0 ? glm::uvec2(0u, emptyLevel(levels, {x, y, z})) : words[volume.index[i] - 1];
-      }
-  });
-  findBlocks(volume, options.limitTexels, layout);
-  return layout;
+  NEPHELE_CHECK_EQ(options.resolution.has_value(), false);
+  return layOut(BrickLevels(volume), options);
 }
 
 void writeSlab(const BrickLayout& layout, const AtlasSlab& slab, std::vector<std::byte>& texels) {

@@ -2,13 +2,16 @@
 // same. Depends on the brick headers alone; no OpenVDB and no GL.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "volume/brick_bounds.h"
+#include "volume/brick_cut.h"
 #include "volume/brick_texel.h"
 #include "volume/bricks.h"
 
@@ -16,10 +19,10 @@ namespace nephele {
 
 /// Two words a brick. x: bits 0–11 and 12–23 are the texel x and y of its first sample in the atlas, bits
 /// 24–31 the code of its maximum (brick_bounds). Where that is 0 the brick holds no density, and y is the
-/// largest L for which the aligned cube of 2^L bricks an edge around it (aligned to brickMin, and cut at the
-/// index's end) holds none either. Else y: bits 0–11 are the texel z; bits 12–14 say along which axes it
+/// largest L for which the aligned cube of 2^L bricks an edge around it (aligned to its corner, and cut at
+/// the index's end) holds none either. Else y: bits 0–11 are the texel z; bits 12–14 say along which axes it
 /// keeps 5 samples instead of 9, and bits 15–17 whether those are its upper ones: beyond them all is 0; bits
-/// 18–20 its level; bits 24–31 the share of the maximum that no sample falls below.
+/// 18–20 its level above the frame's; bits 24–31 the share of the maximum that no sample falls below.
 namespace brick_word {
 inline constexpr uint32_t kCornerBits = 12, kCornerMask = (1u << kCornerBits) - 1, kMaximumShift = 24,
                           kMinimumShift = 24, kHalvedShift = 12, kUpperShift = 15, kLevelShift = 18,
@@ -61,18 +64,23 @@ struct AtlasSlab {
 /// Where every brick goes.
 struct BrickLayout {
   Texel texel = Texel::r32f;
-  glm::ivec3 brickCount{0};       // as the volume's
+  IndexFrame frame;               // what the index covers
+  int mostRise = 0;               // levels that the coarsest brick lies above the frame's
   glm::ivec3 size{1};             // of the atlas, texels
   float maximum = 0.0f;           // no sample exceeds it; codes of maxima are shares of it
   std::vector<glm::uvec2> words;  // x fastest, as BrickVolume::index
   std::vector<BrickSlot> slots;   // in the order of their places
   std::vector<AtlasSlab> slabs;
-  glm::ivec3 blockCount{0};        // blocks of the light cache along each axis
+  double pixels = 0.0;  // that voxels may cover; 0: every brick comes from the finest level
+  std::array<size_t, BrickLevels::kMost + 1> bricksOfLevel{};  // bricks with density, by level
+  glm::ivec3 blockCount{0};                                    // blocks of the light cache along each axis
   std::vector<glm::ivec3> blocks;  // those that hold a brick with density, x fastest
   glm::ivec3 blockPlaces{1};       // size of the cache's atlas in blocks, along each axis
   std::vector<uint32_t>
       blockWords;  // per block, x fastest: 0, or 1 + its place, 10 bits an axis; in order of `blocks`
 
+  /// Of atlas and index.
+  uint64_t bytes() const;
   /// Whether texels are shares of their brick's bound.
   bool scaled() const { return texel == Texel::r8; }
 };
@@ -83,11 +91,18 @@ inline constexpr int kLeastTextureLimit = 2048;
 struct LayoutOptions {
   Texel texel = Texel::r32f;
   int limitTexels = kLeastTextureLimit;
+  std::optional<Resolution> resolution;  // none: every brick from the finest level
+  uint64_t budgetBytes = 0;              // of atlas, index and light cache; 0: no limit
+  uint64_t blockBytes = 0;               // that a block of the light cache takes
 };
 
 /// Lays a volume, which must outlive the layout, out in an atlas of at most `limitTexels` an axis (and what a
-/// word can tell). A brick whose density lies in one half of it along an axis keeps that half. Throws
-/// InputError where the volume has more bricks than that. An empty volume has one texel and no words.
+/// word can tell). A brick whose density lies in one half of it along an axis keeps that half. Where a
+/// resolution is given and the bricks that it asks for take more than the textures or the budget hold, they
+/// come from coarser levels, as if voxels might cover √2, 2, … times as many pixels (BrickLayout::pixels).
+/// Throws InputError where nothing helps. An empty volume has one texel and no words.
+BrickLayout layOut(const BrickLevels& levels, const LayoutOptions& options);
+/// The same without coarser levels.
 BrickLayout layOut(const BrickVolume& volume, const LayoutOptions& options = {});
 
 /// Writes the texels of a slab, x fastest, size.x · size.y · thickness of them, of bytesOf(layout.texel)

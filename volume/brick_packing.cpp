@@ -1,15 +1,13 @@
-// Shelves of boxes. Depends on base alone.
+// Shelves of boxes. Depends on nothing of ours.
 #include "volume/brick_packing.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
-#include <string>
 #include <tuple>
-
-#include "base/error.h"
 
 namespace nephele {
 namespace {
@@ -48,7 +46,7 @@ auto rank(const glm::ivec3& size) { return std::tuple(-size.z, -size.y, -size.x)
 
 }  // namespace
 
-Packing packBoxes(const std::vector<glm::ivec3>& sizes, int limit) {
+std::optional<Packing> packBoxes(const std::vector<glm::ivec3>& sizes, int limit) {
   Packing packing;
   if (sizes.empty()) return packing;
   packing.order.resize(sizes.size());
@@ -84,9 +82,7 @@ Packing packBoxes(const std::vector<glm::ivec3>& sizes, int limit) {
   for (int height = from; height <= to; ++height)
     for (int width = from; width <= to; ++width) attempt(width, height);
   attempt(limit, limit);
-  if (best.x == 0)
-    throw InputError({}, "the grid needs " + std::to_string(texels) + " samples, more than 3-D textures of " +
-                             std::to_string(limit) + " texels a side hold");
+  if (best.x == 0) return std::nullopt;
   packing.size = best;
   packing.corners.resize(sizes.size());
   Shelves shelves(best.x, best.y);

@@ -1,8 +1,9 @@
-// Packing of boxes with few sizes into a box of texels. Depends on nothing of ours but base.
+// Packing of boxes with few sizes into a box of texels. Depends on nothing of ours.
 #pragma once
 
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 namespace nephele {
@@ -16,7 +17,7 @@ struct Packing {
 
 /// Packs boxes, each of whose sides is one of a few small numbers, into at most `limit` texels an axis; of
 /// the widths and heights tried, those that leave the least unused. The same boxes give the same packing.
-/// Throws InputError where they do not fit. No boxes take one texel.
-Packing packBoxes(const std::vector<glm::ivec3>& sizes, int limit);
+/// Nothing where they do not fit. No boxes take one texel.
+std::optional<Packing> packBoxes(const std::vector<glm::ivec3>& sizes, int limit);
 
 }  // namespace nephele

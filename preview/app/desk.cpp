@@ -52,7 +52,7 @@ Desk::Desk(const AppOptions& options, const FirstVolume& first, Window& window, 
       window_(window),
       firstScene_(first.scene),
       document_(first.key, first.volume, first.stamp, reader),
-      viewer_(options.render.filter, options.render.seed),
+      viewer_(options.render.filter, options.render.seed, options.render.vramBytes),
       history_(kMostUndo),
       orbit_(Camera{}) {
   state_.settings.scene = first.scene;

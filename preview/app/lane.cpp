@@ -60,7 +60,8 @@ void Lane::drawQuick(const LaneTools& tools) {
   ViewedScene coarse = request_.view;
   coarse.scene.march = movingMarch(coarse.scene.march);
   const auto start = Clock::now();
-  tools.pass.setParameters(marchParameters(coarse, tools.bricks, width, height, tools.seed, true));
+  tools.pass.setParameters(
+      marchParameters(coarse, tools.bricks, tools.atlas.layout().frame, width, height, tools.seed, true));
   tools.pass.prepare(tools.atlas, kMovingCacheSeconds);
   // Through the pixels' centres: a single sample anywhere else would shift the picture.
   constexpr glm::vec2 kCentre(0.5f, 0.5f);
@@ -90,8 +91,8 @@ bool Lane::work(const LaneTools& tools, double seconds, const RestGoal& goal) {
   NEPHELE_CHECK_EQ(quickNeeded_, false);
   if (!accumulator_) beginRest(tools, goal);
   if (!unfinished()) return false;
-  tools.pass.setParameters(
-      marchParameters(request_.view, tools.bricks, request_.width, request_.height, tools.seed, true));
+  tools.pass.setParameters(marchParameters(request_.view, tools.bricks, tools.atlas.layout().frame,
+                                           request_.width, request_.height, tools.seed, true));
   if (!tools.pass.prepare(tools.atlas, seconds)) return true;
   const auto start = Clock::now();
   const unsigned before = accumulator_->wholeSamples();

@@ -29,6 +29,8 @@ bool marchWidgets(MarchSettings& march) {
   changed |= widgets::slider("shadow growth", march.shadowGrowth, 1.0, 2.0, "%.2f");
   changed |= ImGui::Checkbox("adaptive steps", &march.adaptive);
   changed |= widgets::slider("give up below", march.giveUp, kLeastGiveUp, kMostGiveUp, "%.0e", true);
+  constexpr double kMostLevelPixels = 8.0;
+  changed |= widgets::slider("coarser below", march.levelPixels, 0.0, kMostLevelPixels, "%.2f pixels");
   constexpr const char* kPrecisions = "auto\0r8\0r16f\0r32f\0";  // in the enum's order
   int precision = static_cast<int>(march.precision);
   if (ImGui::Combo("precision", &precision, kPrecisions)) {

@@ -28,9 +28,10 @@ void setRgb(GLint location, const Rgb& rgb) {
 
 }  // namespace
 
-Viewer::Viewer(Filter filter, unsigned seed)
+Viewer::Viewer(Filter filter, unsigned seed, uint64_t vramBytes)
     : filter_(filter),
       seed_(seed),
+      limits_{vramBytes, 0},
       display_(buildProgram("screen.vert", "display.frag")),
       noVertices_(makeVertexArray()) {
   for (GlBuffer& parameters : displayParameters_) {
@@ -43,16 +44,16 @@ Viewer::Viewer(Filter filter, unsigned seed)
 
 void Viewer::setVolume(std::shared_ptr<const BrickVolume> bricks) {
   seen_.reset();  // two volumes at once may be more than the GPU holds
-  const MarchSettings march = lanes_[0] ? lanes_[0]->request().view.scene.march : MarchSettings{};
+  std::swap(bricks_, bricks);
   try {
-    seen_.emplace(*bricks, filter_);
-    seen_->atlasFor(0, march);
+    seen_.emplace(*bricks_, filter_, limits_);
+    if (lanes_[0]) toolsFor(*lanes_[0], false);
   } catch (const std::exception&) {
+    std::swap(bricks_, bricks);
     seen_.reset();
-    if (bricks_) seen_.emplace(*bricks_, filter_);
+    if (bricks_) seen_.emplace(*bricks_, filter_, limits_);
     throw;
   }
-  bricks_ = std::move(bricks);
 }
 
 void Viewer::endSplit() {
@@ -67,14 +68,15 @@ MarchPass& Viewer::passFor(View view) {
   return *pass;
 }
 
-LaneTools Viewer::toolsFor(const Lane& lane) {
-  MarchPass& pass = passFor(lane.request().show);
-  if (lane.request().show == View::slice)
-    pass.setSlice(lane.request().slice.axis, slicePlace(lane.request().slice, *bricks_));
-  pass.setEnvironment(lane.request().view.environmentMap);
+LaneTools Viewer::toolsFor(const Lane& lane, bool moving) {
+  const LaneRequest& r = lane.request();
   const size_t which = lanes_[1] && &lane == &*lanes_[1] ? 1 : 0;
+  const BrickAtlas& atlas = seen_->atlasFor(which, r.view, r.width, r.height, moving);
+  MarchPass& pass = passFor(r.show);
+  if (r.show == View::slice) pass.setSlice(r.slice.axis, slicePlace(r.slice, *bricks_, atlas.layout().frame));
+  pass.setEnvironment(r.view.environmentMap);
   pass.useCache(which);
-  return {*bricks_, seen_->atlasFor(which, lane.request().view.scene.march), pass, seed_};
+  return {*bricks_, atlas, pass, seed_};
 }
 
 void Viewer::restart(Side side, const LaneRequest& request) {
@@ -92,7 +94,7 @@ bool Viewer::work(double seconds) {
     const shared::MarchParameters parameters =
         marchParameters(r.view, *bricks_, r.width, r.height, seed_, true);
     glNamedBufferSubData(displayParameters_[i].name(), 0, sizeof parameters, &parameters);
-    lane->drawQuick(toolsFor(*lane));
+    lane->drawQuick(toolsFor(*lane, true));
     drawn = true;
   }
   if (drawn) return true;
@@ -103,7 +105,7 @@ bool Viewer::work(double seconds) {
       next = &*lane;
   }
   if (next == nullptr) return false;
-  next->work(toolsFor(*next), seconds, goal_);
+  next->work(toolsFor(*next, false), seconds, goal_);
   return std::any_of(lanes_.begin(), lanes_.end(),
                      [](const auto& lane) { return lane && lane->unfinished(); });
 }

@@ -32,7 +32,7 @@ struct Screen {
 class Viewer {
  public:
   /// The context is current.
-  Viewer(Filter filter, unsigned seed);
+  Viewer(Filter filter, unsigned seed, uint64_t vramBytes = 0);
 
   /// Uploads the bricks and keeps them. Where they do not fit, the volume before stays and the reason is
   /// thrown: InputError or WorldError. Pictures must be restarted.
@@ -60,11 +60,12 @@ class Viewer {
 
  private:
   MarchPass& passFor(View view);
-  LaneTools toolsFor(const Lane& lane);
+  LaneTools toolsFor(const Lane& lane, bool moving);
   void showSide(size_t side, const Shown& shown, const Screen& screen);
 
   Filter filter_;
   unsigned seed_;
+  GpuLimits limits_;
   RestGoal goal_;
   std::shared_ptr<const BrickVolume> bricks_;
   std::optional<SeenVolume> seen_;

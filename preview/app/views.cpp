@@ -23,11 +23,12 @@ constexpr std::array<ViewRow, kViewCount> kRows{{
 
 const ViewRow& rowOf(View view) { return kRows[static_cast<size_t>(view)]; }
 
-float slicePlace(const Slice& slice, const BrickVolume& bricks) {
+float slicePlace(const Slice& slice, const BrickVolume& bricks, const IndexFrame& frame) {
   const int axis = slice.axis;
   // The medium reaches one voxel beyond the active box, samples lie on integers: from −1 to the box's end.
   const double low = bricks.activeMin[axis] - 1, high = bricks.activeMax[axis];
-  return static_cast<float>(low + slice.place * (high - low) - double{kBrickCells} * bricks.brickMin[axis]);
+  return static_cast<float>(std::ldexp(low + slice.place * (high - low), -frame.level) -
+                            double{kBrickCells} * frame.brickMin[axis]);
 }
 
 double scaleFor(std::vector<float> values) {

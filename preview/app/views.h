@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "preview/gpu/march_pass.h"
-#include "volume/bricks.h"
+#include "volume/brick_cut.h"
 
 namespace nephele {
 
@@ -31,7 +31,7 @@ struct Slice {
 };
 
 /// Its place in voxels from the corner of the brick grid, as MarchPass::setSlice takes it.
-float slicePlace(const Slice& slice, const BrickVolume& bricks);
+float slicePlace(const Slice& slice, const BrickVolume& bricks, const IndexFrame& frame);
 
 /// Upper end of the scale for values that are ≥ 0: their 99th percentile, which a few bright pixels do not
 /// stretch, rounded up to 1, 2 or 5 times a power of ten; 1 where nothing is above 0.

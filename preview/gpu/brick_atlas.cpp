@@ -13,12 +13,6 @@ namespace {
 constexpr int kWordChannels = 2;
 constexpr GLuint kHeatUnit = 10;  // and the next, as shaders/heat.glsl declares them
 
-int volumeLimit() {
-  GLint limit = 0;
-  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
-  return limit;
-}
-
 struct Format {
   GLenum sized, type;
 };
@@ -41,6 +35,12 @@ uint64_t nextSerial() {
 }
 
 }  // namespace
+
+int volumeTextureLimit() {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
+  return limit;
+}
 
 void setVolumeFilter(GLuint texture, Filter filter) {
   const GLint mode = filter == Filter::hardware ? GL_LINEAR : GL_NEAREST;
@@ -81,10 +81,20 @@ GlTexture makeIndexTexture(std::span<const uint32_t> words, int channels, uint64
   return texture;
 }
 
+std::shared_ptr<const BrickAtlas> atlasOfTemperatures(const BrickVolume& bricks, Filter filter) {
+  if (!bricks.temperature) return nullptr;
+  return std::make_shared<const BrickAtlas>(*bricks.temperature, filter, Texel::r32f);
+}
+
 BrickAtlas::BrickAtlas(const BrickVolume& bricks, Filter filter, Texel texel)
+    : BrickAtlas(layOut(bricks, {texel, volumeTextureLimit(), {}, 0, 0}), atlasOfTemperatures(bricks, filter),
+                 filter) {}
+
+BrickAtlas::BrickAtlas(BrickLayout layout, std::shared_ptr<const BrickAtlas> heat, Filter filter)
     : filter_(filter),
-      layout_(layOut(bricks, {texel, volumeLimit()})),
+      layout_(std::move(layout)),
       atlas_(makeTexture(GL_TEXTURE_3D)),
+      heat_(std::move(heat)),
       serial_(nextSerial()) {
   setVolumeFilter(atlas_.name(), filter);
   uploadAtlas();
@@ -92,10 +102,7 @@ BrickAtlas::BrickAtlas(const BrickVolume& bricks, Filter filter, Texel texel)
   const std::span<const uint32_t> words(layout_.words.empty() ? nullptr : &layout_.words[0].x,
                                         layout_.words.size() * kWordChannels);
   index_ = makeIndexTexture(words, kWordChannels, gpuBytes_);
-  if (bricks.temperature) {
-    heat_ = std::make_unique<BrickAtlas>(*bricks.temperature, filter, Texel::r32f);
-    gpuBytes_ += heat_->gpuBytes();
-  }
+  if (heat_) gpuBytes_ += heat_->gpuBytes();
 }
 
 void BrickAtlas::uploadAtlas() {

@@ -18,8 +18,15 @@ namespace nephele {
 /// driver's 2-D textures do not hold them.
 GlTexture makeIndexTexture(std::span<const uint32_t> words, int channels, uint64_t& gpuBytes);
 
+/// The most texels that the driver's 3-D textures have along an axis.
+int volumeTextureLimit();
+
 /// Sets how a 3-D texture is read between texels; beyond its faces it goes on as at them.
 void setVolumeFilter(GLuint texture, Filter filter);
+
+class BrickAtlas;
+/// The temperatures of a volume on the GPU; nullptr where it has none.
+std::shared_ptr<const BrickAtlas> atlasOfTemperatures(const BrickVolume& bricks, Filter filter);
 
 /// The volume laid out (volume/brick_layout.h) in two textures: a 3-D atlas and the index's words.
 class BrickAtlas {
@@ -28,6 +35,8 @@ class BrickAtlas {
   /// Throws InputError where the grid has more bricks than the driver's textures hold, and WorldError where
   /// the GPU's memory does not suffice. An empty volume makes textures of one brick and one word.
   BrickAtlas(const BrickVolume& bricks, Filter filter, Texel texel);
+  /// The same of a layout that is made already; `heat` is the atlas of its temperatures, or nullptr.
+  BrickAtlas(BrickLayout layout, std::shared_ptr<const BrickAtlas> heat, Filter filter);
 
   /// Binds the atlas to texture unit 0 and the index to unit 1; temperatures to units 10 and 11.
   void bind() const;
@@ -44,7 +53,7 @@ class BrickAtlas {
   BrickLayout layout_;
   GlTexture atlas_;
   GlTexture index_;
-  std::unique_ptr<BrickAtlas> heat_;  // of the volume's temperatures, where it has some
+  std::shared_ptr<const BrickAtlas> heat_;  // of the volume's temperatures, where it has some
   uint64_t gpuBytes_ = 0;
   uint64_t serial_;
 };

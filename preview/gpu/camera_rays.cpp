@@ -20,6 +20,9 @@ static_assert(kMostLights == size_t{shared::kMaxLights});
 vec4 row(const dvec3& v, double w = 0.0) { return vec4(glm::vec3(v), static_cast<float>(w)); }
 dvec3 vectorOf(const Rgb& rgb) { return dvec3(rgb[0], rgb[1], rgb[2]); }
 
+/// Voxels of the finest level along one of the frame's.
+double scaleOf(const IndexFrame& frame) { return std::ldexp(1.0, frame.level); }
+
 struct Frame {
   dvec3 forward, right, up;
 };
@@ -40,28 +43,29 @@ Frame frameOf(const Camera& camera) {
 
 /// Axis distance from the camera to the nearest corner of the support; 0 where the camera is beside or inside
 /// it.
-double planeDistance(const BrickVolume& bricks, const Camera& camera, const dvec3& forward) {
+double planeDistance(const BrickVolume& bricks, const IndexFrame& frame, const Camera& camera,
+                     const dvec3& forward) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int corner = 0; corner < 8; ++corner) {
     dvec3 index;
     for (int axis = 0; axis < 3; ++axis)
-      index[axis] = (corner >> axis & 1) != 0 ? bricks.activeMax[axis] : bricks.activeMin[axis] - 1;
-    const dvec3 world(bricks.worldFromIndex * glm::dvec4(index, 1.0));
+      index[axis] = (corner >> axis & 1) != 0 ? frame.boxMax[axis] : frame.boxMin[axis];
+    const dvec3 world(bricks.worldFromIndex * glm::dvec4(scaleOf(frame) * index, 1.0));
     nearest = std::min(nearest, glm::dot(world - camera.position, forward));
   }
   return std::max(nearest, 0.0);
 }
 
 void setRays(shared::MarchParameters& p, const Camera& camera, const BrickVolume& bricks,
-             const dmat3& indexFromWorld, int width, int height) {
+             const IndexFrame& index, const dmat3& indexFromWorld, int width, int height) {
   const Frame frame = frameOf(camera);
   const double half = std::tan(0.5 * camera.fov);
   const double aspect = static_cast<double>(width) / height;
   const dvec3 corner = frame.forward - half * aspect * frame.right + half * frame.up;
   const dvec3 dx = (2.0 * half * aspect / width) * frame.right;
   const dvec3 dy = (-2.0 * half / height) * frame.up;
-  const double distance = planeDistance(bricks, camera, frame.forward);
-  const dvec3 brickCorner(bricks.brickMin * kBrickCells);
+  const double distance = planeDistance(bricks, index, camera, frame.forward);
+  const dvec3 brickCorner(index.brickMin * kBrickCells);
   const dvec3 cameraIndex =
       indexFromWorld * (camera.position - dvec3(bricks.worldFromIndex[3])) - brickCorner;
   p.rayCorner = row(corner);
@@ -76,7 +80,7 @@ void setRays(shared::MarchParameters& p, const Camera& camera, const BrickVolume
 }
 
 void setLights(shared::MarchParameters& p, const std::vector<Light>& lights, const BrickVolume& bricks,
-               const dmat3& indexFromWorld) {
+               const IndexFrame& frame, const dmat3& indexFromWorld) {
   if (lights.size() > static_cast<size_t>(shared::kMaxLights))
     throw InputError({}, "the scene has " + std::to_string(lights.size()) + " lights; at most " +
                              std::to_string(shared::kMaxLights) + " are lit");
@@ -89,15 +93,16 @@ void setLights(shared::MarchParameters& p, const std::vector<Light>& lights, con
     } else {
       const PointLight& point = std::get<PointLight>(lights[i]);
       const dvec3 index = indexFromWorld * (point.position - dvec3(bricks.worldFromIndex[3]));
-      to = {row(dvec3(0.0), shared::kLightPoint), row(index - dvec3(bricks.brickMin * kBrickCells)),
+      to = {row(dvec3(0.0), shared::kLightPoint), row(index - dvec3(frame.brickMin * kBrickCells)),
             row(vectorOf(point.intensity))};
     }
   }
 }
 
 /// How steps follow the optical depth, and what the light cache holds.
-void setWalk(shared::MarchParameters& p, const MarchSettings& march, const BrickVolume& bricks) {
-  const dvec3 cells(bricks.brickCount * kBrickCells);
+void setWalk(shared::MarchParameters& p, const MarchSettings& march, const BrickVolume& bricks,
+             const IndexFrame& frame) {
+  const dvec3 cells(frame.brickCount * kBrickCells);
   // A float's last place at the far end of the index, a few times over, and never less than can matter.
   constexpr double kLeastMargin = 1e-4, kFloatStep = 1e-6;
   const double margin = std::max(kLeastMargin, kFloatStep * std::max({cells.x, cells.y, cells.z}));
@@ -136,25 +141,37 @@ dvec3 viewDirection(const Camera& camera, int width, int height, double x, doubl
 
 shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolume& bricks, int width,
                                         int height, unsigned seed, bool randomStart) {
+  return marchParameters(view, bricks, frameOf(bricks), width, height, seed, randomStart);
+}
+
+Resolution resolutionOf(const Camera& camera, const BrickVolume& bricks, int height, double pixels) {
+  const dvec3 eye =
+      glm::inverse(dmat3(bricks.worldFromIndex)) * (camera.position - dvec3(bricks.worldFromIndex[3]));
+  return {eye, 0.5 * height / std::tan(0.5 * camera.fov), pixels};
+}
+
+shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolume& bricks,
+                                        const IndexFrame& frame, int width, int height, unsigned seed,
+                                        bool randomStart) {
   shared::MarchParameters p{};
-  const dmat3 worldFromIndex(bricks.worldFromIndex);
+  const dmat3 worldFromIndex = scaleOf(frame) * dmat3(bricks.worldFromIndex);
   const dmat3 indexFromWorld = glm::inverse(worldFromIndex);
-  setRays(p, view.camera, bricks, indexFromWorld, width, height);
-  setLights(p, view.scene.lights, bricks, indexFromWorld);
+  setRays(p, view.camera, bricks, frame, indexFromWorld, width, height);
+  setLights(p, view.scene.lights, bricks, frame, indexFromWorld);
   p.worldFromIndexX = row(worldFromIndex[0]);
   p.worldFromIndexY = row(worldFromIndex[1]);
   p.worldFromIndexZ = row(worldFromIndex[2]);
   p.indexFromWorldX = row(indexFromWorld[0]);
   p.indexFromWorldY = row(indexFromWorld[1]);
   p.indexFromWorldZ = row(indexFromWorld[2]);
-  const glm::ivec3 brickCorner = bricks.brickMin * kBrickCells;
-  p.boxMin = row(dvec3(bricks.activeMin - 1 - brickCorner));
-  p.boxMax = row(dvec3(bricks.activeMax - brickCorner));
+  const glm::ivec3 brickCorner = frame.brickMin * kBrickCells;
+  p.boxMin = row(dvec3(frame.boxMin - brickCorner));
+  p.boxMax = row(dvec3(frame.boxMax - brickCorner));
   if (bricks.empty()) p.boxMin = p.boxMax = vec4(0.0f);  // a box that no ray meets
   const Scene& scene = view.scene;
   p.sigmaS.w = static_cast<float>(scene.march.stepVoxels);
   p.environment.w = static_cast<float>(scene.march.giveUp);
-  setLightParameters(p, view, bricks);
+  setLightParameters(p, view, bricks, frame);
   // Products with steps and coefficients must stay floats, and columns below the march's own infinity.
   constexpr double kLargestDensity = 1e15;
   if (bricks.maximum > kLargestDensity)
@@ -162,9 +179,9 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   NEPHELE_CHECK_GT(scene.march.shadowStepVoxels, 0.0);
   NEPHELE_CHECK_LE(1.0, scene.march.shadowGrowth);  // less would never arrive
   p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, 0.0), 0.0);
-  setWalk(p, scene.march, bricks);
+  setWalk(p, scene.march, bricks, frame);
   p.counts.w = randomStart ? 1 : 0;
-  p.brickCount = glm::ivec4(bricks.brickCount, static_cast<int>(seed));
+  p.brickCount = glm::ivec4(frame.brickCount, static_cast<int>(seed));
   return p;
 }
 

@@ -115,9 +115,9 @@ FilmPicture Film::read() const {
   return result;
 }
 
-uint64_t Film::gpuBytes() const {
-  return uint64_t{kTargets} * kChannels * sizeof(float) * static_cast<uint64_t>(width_) *
-         static_cast<uint64_t>(height_);
+uint64_t Film::bytesFor(int width, int height) {
+  return uint64_t{kTargets} * kChannels * sizeof(float) * static_cast<uint64_t>(width) *
+         static_cast<uint64_t>(height);
 }
 
 }  // namespace nephele

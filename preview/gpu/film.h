@@ -44,7 +44,8 @@ class Film {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  uint64_t gpuBytes() const;
+  uint64_t gpuBytes() const { return bytesFor(width_, height_); }
+  static uint64_t bytesFor(int width, int height);
 
  private:
   static constexpr int kTargets = 3;

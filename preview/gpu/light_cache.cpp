@@ -59,14 +59,25 @@ LightCache::LightCache(Filter filter, const std::vector<TextChange>& changes)
   glNamedBufferStorage(cost_.name(), sizeof zero, &zero, GL_DYNAMIC_STORAGE_BIT);
 }
 
-void LightCache::build(bool scaled) {
-  GlProgram& program = programs_[scaled ? 1 : 0];
-  if (program.name() != 0) return;
-  program = buildComputeProgram(
-      "light_cache.comp",
-      {floats_ ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
-       floats_ ? "NPH_CACHE_FLOAT 1" : "NPH_CACHE_FLOAT 0", scaled ? "NPH_SCALED true" : "NPH_SCALED false"},
-      changes_);
+const GlProgram& LightCache::programFor(const MarchParameters& parameters) {
+  const auto flag = [](const char* name, bool on) { return std::string(name) + (on ? " true" : " false"); };
+  const std::vector<std::string> defines = {floats_ ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
+                                            floats_ ? "NPH_CACHE_FLOAT 1" : "NPH_CACHE_FLOAT 0",
+                                            flag("NPH_SCALED", parameters.counts.z != 0),
+                                            flag("NPH_LEVELS", parameters.cacheShape.w != 0)};
+  GlProgram& program = programs_[defines];
+  if (program.name() == 0) program = buildComputeProgram("light_cache.comp", defines, changes_);
+  return program;
+}
+
+uint64_t LightCache::blockBytes(Filter filter, const MarchParameters& parameters) {
+  const uint64_t channelBytes = filter == Filter::exact ? sizeof(float) : sizeof(float) / 2;
+  const auto cube = [](int samples) { return static_cast<uint64_t>(samples * samples * samples); };
+  constexpr uint64_t kSkyChannels = 8, kIndexBytes = sizeof(uint32_t) + sizeof(glm::ivec4);
+  const uint64_t columns = parameters.cache.x > 0.0f
+                               ? cube(parameters.cacheShape.x) * static_cast<uint64_t>(parameters.counts.x)
+                               : 0;
+  return kIndexBytes + channelBytes * (columns + kSkyChannels * cube(parameters.cacheShape.y));
 }
 
 void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameters) {
@@ -119,9 +130,9 @@ void LightCache::findTasks(const MarchParameters& parameters) {
   if (parameters.cacheShape.y > 0 && (all || !sameSky(*known_, parameters))) begin(kSky);
 }
 
-void LightCache::fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) const {
+void LightCache::fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) {
   atlas.bind();
-  glUseProgram(programs_[known_->counts.z != 0 ? 1 : 0].name());
+  glUseProgram(programFor(*known_).name());
   glBindTextureUnit(2, blockIndex_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kBlocksBinding, blocks_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kCostBinding, cost_.name());
@@ -147,7 +158,6 @@ bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& paramete
     atlasSerial_ = atlas.serial();
     seconds = std::numeric_limits<double>::infinity();  // it holds nothing that could be shown meanwhile
   }
-  build(parameters.counts.z != 0);
   findTasks(parameters);
   if (blockTotal_ == 0) tasks_.clear();
   known_ = parameters;

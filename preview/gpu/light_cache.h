@@ -2,8 +2,9 @@
 // lattice. Depends on shaders/shared, gpu/brick_atlas.h and gpu/shader.h.
 #pragma once
 
-#include <array>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "preview/gpu/brick_atlas.h"
@@ -26,6 +27,8 @@ class LightCache {
   /// not yet keeps what it held.
   bool update(const BrickAtlas& atlas, const shared::MarchParameters& parameters, double seconds);
 
+  /// What a block takes under these parameters.
+  static uint64_t blockBytes(Filter filter, const shared::MarchParameters& parameters);
   /// Binds to texture units 2, 3 and 5.
   void bind() const;
   uint64_t gpuBytes() const { return gpuBytes_; }
@@ -41,13 +44,14 @@ class LightCache {
 
   void shape(const BrickAtlas& atlas, const shared::MarchParameters& parameters);
   void findTasks(const shared::MarchParameters& parameters);
-  void fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) const;
+  void fill(const BrickAtlas& atlas, Task& task, uint32_t blocks);
 
-  void build(bool scaled);
+  const GlProgram& programFor(const shared::MarchParameters& parameters);
 
   bool floats_;
   std::vector<TextChange> changes_;
-  std::array<GlProgram, 2> programs_;  // by whether texels have a scale a brick; built when first needed
+  std::map<std::vector<std::string>, GlProgram>
+      programs_;  // by what each leaves out; built when first needed
   GlTexture blockIndex_, columns_, sky_;
   GlBuffer blocks_, cost_;
   uint32_t blockTotal_ = 0;

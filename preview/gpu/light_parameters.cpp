@@ -25,12 +25,13 @@ dvec3 vectorOf(const Rgb& rgb) { return dvec3(rgb[0], rgb[1], rgb[2]); }
 
 /// Height along up of an index position, 0 and 1 at the ends of the world box of the active voxels, whose
 /// cells reach half a voxel to all sides.
-vec4 heightRow(const BrickVolume& bricks, const dvec3& up) {
-  const dmat3 worldFromIndex(bricks.worldFromIndex);
+vec4 heightRow(const BrickVolume& bricks, const IndexFrame& frame, const dvec3& up) {
+  const double scale = std::ldexp(1.0, frame.level);
+  const dmat3 worldFromIndex = scale * dmat3(bricks.worldFromIndex);
   const dvec3 slope(glm::dot(worldFromIndex[0], up), glm::dot(worldFromIndex[1], up),
                     glm::dot(worldFromIndex[2], up));
-  const dvec3 corner = dvec3(bricks.activeMin - bricks.brickMin * kBrickCells) - 0.5;
-  const dvec3 extent(bricks.activeMax - bricks.activeMin);
+  const dvec3 corner = (dvec3(bricks.activeMin) - 0.5) / scale - dvec3(frame.brickMin * kBrickCells);
+  const dvec3 extent = dvec3(bricks.activeMax - bricks.activeMin) / scale;
   double base = glm::dot(slope, corner), reach = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     base += std::min(0.0, slope[axis] * extent[axis]);
@@ -39,9 +40,12 @@ vec4 heightRow(const BrickVolume& bricks, const dvec3& up) {
   return reach > 0.0 ? row(slope / reach, -base / reach) : vec4(0.0f);
 }
 
-void setChord(shared::MarchParameters& p, const BrickVolume& bricks, LightTransmittance transmittance) {
-  const dvec3 corner(bricks.brickMin * kBrickCells);
-  const dvec3 sum(bricks.activeMin + bricks.activeMax - 1), extent(bricks.activeMax - bricks.activeMin);
+void setChord(shared::MarchParameters& p, const BrickVolume& bricks, const IndexFrame& frame,
+              LightTransmittance transmittance) {
+  const double scale = std::ldexp(1.0, frame.level);
+  const dvec3 corner(frame.brickMin * kBrickCells);
+  const dvec3 sum = dvec3(bricks.activeMin + bricks.activeMax - 1) / scale;
+  const dvec3 extent = dvec3(bricks.activeMax - bricks.activeMin) / scale;
   p.chordCentre = row(0.5 * sum - corner, bricks.meanActive);
   p.chordRadii = row(0.5 * extent, transmittance == LightTransmittance::chord ? 1.0 : 0.0);
 }
@@ -84,9 +88,12 @@ void setEnvironment(shared::MarchParameters& p, const ViewedScene& view) {
 
 /// From the density's index space, relative to its brick grid's corner, to the temperatures', relative to
 /// theirs.
-void setHeatPlaces(shared::MarchParameters& p, const BrickVolume& bricks, const BrickVolume& heat) {
-  const glm::dmat4 heatFromIndex = glm::inverse(heat.worldFromIndex) * bricks.worldFromIndex;
-  const glm::dvec4 corner(dvec3(bricks.brickMin * kBrickCells), 1.0);
+void setHeatPlaces(shared::MarchParameters& p, const BrickVolume& bricks, const IndexFrame& frame,
+                   const BrickVolume& heat) {
+  glm::dmat4 worldFromIndex = bricks.worldFromIndex;
+  for (int axis = 0; axis < 3; ++axis) worldFromIndex[axis] *= std::ldexp(1.0, frame.level);
+  const glm::dmat4 heatFromIndex = glm::inverse(heat.worldFromIndex) * worldFromIndex;
+  const glm::dvec4 corner(dvec3(frame.brickMin * kBrickCells), 1.0);
   const dvec3 origin = dvec3(heatFromIndex * corner) - dvec3(heat.brickMin * kBrickCells);
   vec4* const rows[] = {&p.heatX, &p.heatY, &p.heatZ};
   for (int axis = 0; axis < 3; ++axis)
@@ -108,7 +115,8 @@ void setBlackbody(shared::MarchParameters& p) {
   }
 }
 
-void setEmission(shared::MarchParameters& p, const ViewedScene& view, const BrickVolume& bricks) {
+void setEmission(shared::MarchParameters& p, const ViewedScene& view, const BrickVolume& bricks,
+                 const IndexFrame& frame) {
   const Emission& emission = view.scene.emission;
   const bool on = emission.on.value_or(true) && bricks.temperature && !bricks.temperature->empty() &&
                   view.medium.sigmaA != Rgb{};
@@ -116,25 +124,26 @@ void setEmission(shared::MarchParameters& p, const ViewedScene& view, const Bric
       on ? vec4(static_cast<float>(emission.scale), static_cast<float>(emission.temperatureScale), 0.0f, 0.0f)
          : vec4(0.0f);
   if (!on) return;
-  setHeatPlaces(p, bricks, *bricks.temperature);
+  setHeatPlaces(p, bricks, frame, *bricks.temperature);
   setBlackbody(p);
 }
 
 }  // namespace
 
-void setLightParameters(shared::MarchParameters& p, const ViewedScene& view, const BrickVolume& bricks) {
+void setLightParameters(shared::MarchParameters& p, const ViewedScene& view, const BrickVolume& bricks,
+                        const IndexFrame& frame) {
   const LightModel light = lightModelOf(view.scene, view.medium);
   const dvec3 sigmaS = vectorOf(view.medium.sigmaS);
   p.sigmaT = row(sigmaS + vectorOf(view.medium.sigmaA));
   p.sigmaS = row(sigmaS, double{p.sigmaS.w});
   p.phase = row(dvec3(light.phase.first, light.phase.second, light.phase.share));
   p.powder = row(dvec3(light.oSa, bricks.maximum > 0.0 ? 1.0 / bricks.maximum : 0.0, 0.0));
-  p.height = heightRow(bricks, view.up);
+  p.height = heightRow(bricks, frame, view.up);
   p.octaves = row(dvec3(light.a, light.b, light.c));
   p.counts.y = light.octaveCount;
-  setChord(p, bricks, light.transmittance);
+  setChord(p, bricks, frame, light.transmittance);
   setEnvironment(p, view);
-  setEmission(p, view, bricks);
+  setEmission(p, view, bricks, frame);
 }
 
 }  // namespace nephele

@@ -54,25 +54,26 @@ class MarchMethod : public Method {
     secondsDriver = secondsSince(start);
     start = Clock::now();
     pass_.emplace(options.filter);
+    limits_.bytes = options.vramBytes;
     secondsShaders = secondsSince(start);
     renderer = glRenderer();
   }
 
   void setVolume(const BrickVolume& bricks) override {
     volume_.reset();  // two volumes at once may be more than the GPU holds
-    volume_.emplace(bricks, pass_->filter());
+    volume_.emplace(bricks, pass_->filter(), limits_);
     bricks_ = &bricks;
   }
 
   Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
     NEPHELE_CHECK_EQ(volume_.has_value(), true);
-    const BrickAtlas& atlas = volume_->atlasFor(0, view.scene.march);
     const auto start = Clock::now();
+    const BrickAtlas& atlas = volume_->atlasFor(0, view, request.width, request.height, false);
     const int width = strided(request.width, request.stride),
               height = strided(request.height, request.stride);
     const Film film(width, height);
-    shared::MarchParameters parameters =
-        marchParameters(view, *bricks_, request.width, request.height, request.seed, true);
+    shared::MarchParameters parameters = marchParameters(view, *bricks_, atlas.layout().frame, request.width,
+                                                         request.height, request.seed, true);
     takeEvery(request.stride, parameters);
     pass_->setParameters(parameters);
     pass_->setEnvironment(view.environmentMap);
@@ -96,6 +97,9 @@ class MarchMethod : public Method {
         (result.densitySamples + cacheDensities) / (static_cast<double>(width) * height);
     cost.gpuBytes = volume_->gpuBytes() + film.gpuBytes() + pass_->gpuBytes();
     cost.volumeBytes = volume_->gpuBytes() + pass_->gpuBytes();
+    cost.bricksOfLevel.assign(atlas.layout().bricksOfLevel.begin(), atlas.layout().bricksOfLevel.end());
+    while (!cost.bricksOfLevel.empty() && cost.bricksOfLevel.back() == 0) cost.bricksOfLevel.pop_back();
+    cost.voxelPixels = atlas.layout().pixels;
     cost.texel = std::string(nameOf(atlas.layout().texel));
     return std::move(result.picture);
   }
@@ -103,6 +107,7 @@ class MarchMethod : public Method {
  private:
   std::optional<EglContext> context_;  // first, so that it goes last
   std::optional<MarchPass> pass_;
+  GpuLimits limits_;
   std::optional<SeenVolume> volume_;
   const BrickVolume* bricks_ = nullptr;
 };

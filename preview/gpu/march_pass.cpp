@@ -28,6 +28,7 @@ std::vector<std::string> definesFor(Filter filter, MarchWrites writes, const sha
           flag("NPH_POWDER", p.powder.x > 0.0f),
           flag("NPH_LOBES", p.phase.z > 0.0f),
           flag("NPH_SCALED", p.counts.z != 0),
+          flag("NPH_LEVELS", p.cacheShape.w != 0),
           p.emission.x > 0.0f ? "NPH_HEAT 1" : "NPH_HEAT 0",
           "NPH_SKY " + std::to_string(sky)};
 }

@@ -48,6 +48,7 @@ struct March {
 
 #define NPH_EMISSION (params.emission.x > 0.0f)
 #define NPH_CACHED (params.cache.x > 0.0f)
+#define NPH_LEVELS (params.cacheShape.w != 0)
 #define NPH_NEAR (params.cache.w > 0.0f)
 #define NPH_POINTS true
 #define NPH_POWDER true
@@ -62,6 +63,7 @@ struct March {
 #include "shaders/shared/walk.glsl"
 #undef NPH_CACHED
 #undef NPH_EMISSION
+#undef NPH_LEVELS
 #undef NPH_NEAR
 #undef NPH_POINTS
 #undef NPH_POWDER

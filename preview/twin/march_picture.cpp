@@ -63,12 +63,12 @@ Volume<float> atlasOf(const BrickLayout& layout) {
 
 struct ArraySource {
   const BrickLayout* layout;
-  const BrickLayout* heat;  // of the temperatures
+  const BrickLayout* heat;  // of the temperatures, or nullptr
   Volume<float> atlas, heatAtlas;
   Volume<float> columns;
   Volume<vec4> skies;
 
-  uvec2 word(ivec3 brick) const { return layout->words[flat(layout->brickCount, brick)]; }
+  uvec2 word(ivec3 brick) const { return layout->words[flat(layout->frame.brickCount, brick)]; }
   uint block(ivec3 block) const { return layout->blockWords[flat(layout->blockCount, block)]; }
   float column(vec3 texel) const { return columns.read(texel); }
   vec4 sky(int part, vec3 texel) const {
@@ -84,7 +84,7 @@ struct ArraySource {
     return mixed([&](const ivec3& p) { return in.texels[flat(in.size, p)]; }, corner + cell,
                  kept - vec3(cell));
   }
-  uvec2 heatWord(ivec3 brick) const { return heat->words[flat(heat->brickCount, brick)]; }
+  uvec2 heatWord(ivec3 brick) const { return heat->words[flat(heat->frame.brickCount, brick)]; }
 };
 
 /// What shaders/light_cache.comp fills for the exact filter.
@@ -124,14 +124,13 @@ void fillCache(ArraySource& source, const March<ArraySource>& march) {
 
 }  // namespace
 
-std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const MarchParameters& parameters, int width,
-                                    int height, glm::vec2 subPixel, unsigned number, const SkyArrays& sky,
-                                    Texel texel) {
+std::vector<TwinPixel> marchPicture(const BrickLayout& layout, const BrickLayout* heat,
+                                    const MarchParameters& parameters, int width, int height,
+                                    glm::vec2 subPixel, unsigned number, const SkyArrays& sky) {
   std::vector<TwinPixel> pixels(static_cast<size_t>(width) * static_cast<size_t>(height));
-  if (bricks.empty() && parameters.skyForward.w <= 0.0f) return pixels;
-  const BrickLayout layout = layOut(bricks, {texel});
-  const BrickLayout heat = bricks.temperature ? layOut(*bricks.temperature) : BrickLayout{};
-  ArraySource source{&layout, &heat, atlasOf(layout), atlasOf(heat), {}, {}};
+  if (layout.words.empty() && parameters.skyForward.w <= 0.0f) return pixels;
+  ArraySource source{&layout, heat, atlasOf(layout), heat != nullptr ? atlasOf(*heat) : Volume<float>{},
+                     {},      {}};
   March<ArraySource> whole{parameters, &source, sky};
   describeLayout(whole.params, layout);
   fillCache(source, whole);
@@ -154,6 +153,15 @@ std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const MarchParame
     }
   });
   return pixels;
+}
+
+std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const MarchParameters& parameters, int width,
+                                    int height, glm::vec2 subPixel, unsigned number, const SkyArrays& sky,
+                                    Texel texel) {
+  const BrickLayout layout = layOut(bricks, {texel, kLeastTextureLimit, {}, 0, 0});
+  const BrickLayout heat = bricks.temperature ? layOut(*bricks.temperature) : BrickLayout{};
+  return marchPicture(layout, bricks.temperature ? &heat : nullptr, parameters, width, height, subPixel,
+                      number, sky);
 }
 
 }  // namespace nephele

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "preview/twin/march.h"
-#include "volume/brick_texel.h"
-#include "volume/bricks.h"
+#include "volume/brick_layout.h"
 
 namespace nephele {
 
@@ -22,8 +21,12 @@ struct TwinPixel {
 /// Marches one ray a pixel, width × height of them, row 0 at the top; pixel (x, y) is seen through picture
 /// position (x, y) + subPixel. `number` is the sample's number and, with the seed in `parameters`, chooses
 /// its random numbers. Runs on all threads; the result does not depend on their number. An empty volume gives
-/// transmittance 1. `sky` is looked at where the environment is a lat-long picture. Densities are those that
-/// an atlas of `texel` holds.
+/// transmittance 1. `sky` is looked at where the environment is a lat-long picture. `layout` is that of the
+/// densities, in whose frame the parameters are, and `heat` that of the temperatures, or nullptr.
+std::vector<TwinPixel> marchPicture(const BrickLayout& layout, const BrickLayout* heat,
+                                    const shared::MarchParameters& parameters, int width, int height,
+                                    glm::vec2 subPixel, unsigned number, const shared::SkyArrays& sky = {});
+/// The same over a volume's finest level, kept as `texel`.
 std::vector<TwinPixel> marchPicture(const BrickVolume& bricks, const shared::MarchParameters& parameters,
                                     int width, int height, glm::vec2 subPixel, unsigned number,
                                     const shared::SkyArrays& sky = {}, Texel texel = Texel::r32f);

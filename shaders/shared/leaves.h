@@ -41,6 +41,7 @@ void describeLayout(MarchParameters& p, const Layout& layout) {
   p.counts.z = layout.scaled() ? 1 : 0;
   p.blockCount = ivec4(layout.blockCount, 0);
   p.cacheShape.z = layout.blockPlaces.z * p.cacheShape.x;
+  p.cacheShape.w = layout.mostRise > 0 ? 1 : 0;
 }
 
 }  // namespace nephele::shared

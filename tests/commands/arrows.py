@@ -24,7 +24,7 @@ ROOMS = [
     ("preview", r"preview/"),
     ("shared", r"shaders/shared/"),
     ("shaders", r"shaders/"),
-    ("bricks", r"volume/(bricks\.(h|cpp)|brick_(bounds|builder|layout|levels|packing|texel)\.(h|cpp))"),
+    ("bricks", r"volume/(bricks\.(h|cpp)|brick_(bounds|builder|cut|layout|levels|packing|texel)\.(h|cpp))"),
     ("volume", r"volume/"),
     ("scene", r"scene/"),
     ("particles", r"particles/"),

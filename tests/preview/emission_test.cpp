@@ -51,7 +51,7 @@ TEST(SharedEmission, TableIsPlancksLaw) {
     float density(glm::uvec2, glm::vec3, glm::ivec3) const { return 0.0f; }
   };
   shared::March<Source> march{};
-  setLightParameters(march.params, viewOf(bricks), bricks);
+  setLightParameters(march.params, viewOf(bricks), bricks, frameOf(bricks));
   for (double kelvin = 505.0; kelvin < 60000.0; kelvin *= 1.01) {
     const auto expected = blackbodyRadiance(kelvin);
     const glm::vec3 actual = march.blackbodyRadiance(static_cast<float>(kelvin));

@@ -216,7 +216,7 @@ TEST(GlParity, EachMutantBreaksTheGate) {
       {"step 1% longer", {march, "params.sigmaS.w * size * voxel", "1.01f * params.sigmaS.w * size * voxel"}},
       {"1/12 for 1/(4 pi)", {phase, "(4.0f * kPi * base * sqrt(base))", "(12.0f * base * sqrt(base))"}},
       {"first shadow step dropped",
-       {walk, "float dt = steps.x / length(direction);",
+       {walk, "float dt = steps.x * voxelAt(origin) / length(direction);",
         "float dt = steps.x / length(direction); tNear += dt;"}},
       {"octaves' b is a", {light, "scattering *= params.octaves.y", "scattering *= params.octaves.x"}},
       {"octaves' c left out", {light, "lobes.x *= params.octaves.z", "lobes.x *= 1.0f"}},

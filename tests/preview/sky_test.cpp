@@ -49,7 +49,7 @@ ViewedScene mapView(int width, int height, double rotation) {
 /// The shared text over the environment of a view.
 March<NoBricks> marchOver(const ViewedScene& view) {
   MarchParameters p{};
-  setLightParameters(p, view, BrickVolume{});
+  setLightParameters(p, view, BrickVolume{}, IndexFrame{});
   March<NoBricks> march{p, nullptr};
   if (view.environmentMap)
     march.skyArrays = {view.environmentMap->texels.data(), view.environmentMap->cells.data()};
@@ -150,7 +150,7 @@ TEST(SharedSky, EveryKindLightsAThinMediumByItsMean) {
   for (const ViewedScene& view : {rampView(0.3, {0, 0, 1}), mapView(16, 8, 0.0)}) {
     const FullBricks bricks;
     MarchParameters p{};
-    setLightParameters(p, view, BrickVolume{});
+    setLightParameters(p, view, BrickVolume{}, IndexFrame{});
     p.originCorner = vec4(0.0f, 104.0f, 104.0f, 0.0f);
     p.directionCorner = p.rayCorner = vec4(1.0f, 0.0f, 0.0f, 0.0f);
     p.worldFromIndexX = p.indexFromWorldX = vec4(1.0f, 0.0f, 0.0f, 0.0f);
@@ -188,7 +188,7 @@ TEST(LightParameters, HeightRunsOverTheWorldBoxOfTheActiveVoxels) {
   const BrickVolume bricks =
       bricksFromDense(std::vector<float>(6 * 8 * 10, 2.0f), {6, 8, 10}, {-3, 4, 5}, worldFromIndex);
   MarchParameters p{};
-  setLightParameters(p, ViewedScene{}, bricks);
+  setLightParameters(p, ViewedScene{}, bricks, frameOf(bricks));
   const auto height = [&](double x) {
     const glm::dvec3 position = glm::dvec3(x, 6.0, 7.0) - glm::dvec3(bricks.brickMin * kBrickCells);
     return double{dot(vec3(position), vec3(p.height)) + p.height.w};
