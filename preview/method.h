@@ -53,6 +53,8 @@ struct PictureCost {
   std::string texel;                    // of the atlas: "r8", "r16f", "r32f"; empty where there is none
   std::vector<size_t> bricksOfLevel;    // bricks with density read from each level, finest first
   double voxelPixels = 0.0;             // that voxels were allowed to cover when levels were chosen
+  double skipsChecked = 0.0;            // densities that march: { check_skips } read besides
+  double skipsWrong = 0.0;              // of those, where a skip or a bound was wrong
   double relativeError = 0.0;           // the picture's own noise as relative RMSE, where the method knows it
 };
 

@@ -130,6 +130,8 @@ void writeStats(const std::string& path, const Totals& totals, const Method& met
                                {"gpu_texel", totals.cost.texel},
                                {"bricks_of_level", totals.cost.bricksOfLevel},
                                {"voxel_pixels", totals.cost.voxelPixels},
+                               {"skips_checked", totals.cost.skipsChecked},
+                               {"skips_wrong", totals.cost.skipsWrong},
                                {"gl_renderer", method.renderer},
                                {"seconds_driver", method.secondsDriver},
                                {"seconds_shaders", method.secondsShaders},
@@ -182,6 +184,11 @@ class Sequence {
     totals_.cost.texel = cost.texel;
     totals_.cost.bricksOfLevel = cost.bricksOfLevel;
     totals_.cost.voxelPixels = cost.voxelPixels;
+    totals_.cost.skipsChecked += cost.skipsChecked;
+    totals_.cost.skipsWrong += cost.skipsWrong;
+    if (view_->scene.march.checkSkips && !isReference())
+      std::cerr << "check_skips: of " << cost.skipsChecked << " densities checked, bounds were wrong for "
+                << cost.skipsWrong << '\n';
     if (cost.voxelPixels > view_->scene.march.levelPixels)
       std::cerr << "levels: GPU memory or textures end before the picture is resolved; voxels cover up to "
                 << cost.voxelPixels << " pixels\n";

@@ -277,6 +277,7 @@ MarchSettings readMarch(const yaml::Node& node, Diagnostics& out) {
   march.cacheNearVoxels = reader.number("cache_near", march.cacheNearVoxels, kNear);
   march.giveUp = reader.number("give_up", march.giveUp, {0.0, 0.1, true, false});
   march.cacheNearSteps = static_cast<int>(reader.integer("cache_near_steps", march.cacheNearSteps, kNear));
+  march.checkSkips = reader.boolean("check_skips", march.checkSkips);
   march.levelPixels = reader.number("level_pixels", march.levelPixels, {0.0, 64.0, false, false});
   std::vector<std::string> names;
   for (const AtlasPrecision precision : kAtlasPrecisions) names.push_back(nameOf(precision));

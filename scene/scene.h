@@ -160,6 +160,7 @@ struct MarchSettings {
   double cacheNearVoxels = 8.0;   // marched towards a light before the volume is asked, from 0 to 16
   int cacheNearSteps = 4;         // in so many steps, from 0 to 16
   double giveUp = 1e-4;           // transmittance below which a ray ends, in (0, 0.1]
+  bool checkSkips = false;        // reads what was skipped as well, and counts what that would have changed
   AtlasPrecision precision = AtlasPrecision::automatic;
   double levelPixels = 1.0;  // voxels that cover at most so many come from coarser levels; 0: none do
   bool operator==(const MarchSettings&) const = default;

@@ -152,7 +152,9 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
       ", sky_cache: " + shortest(scene.march.skyCacheVoxels) +
       ", cache_near: " + shortest(scene.march.cacheNearVoxels) +
       ", cache_near_steps: " + std::to_string(scene.march.cacheNearSteps) +
-      ", give_up: " + shortest(scene.march.giveUp) + ", precision: " + nameOf(scene.march.precision) +
+      ", give_up: " + shortest(scene.march.giveUp) +
+      ", check_skips: " + (scene.march.checkSkips ? "true" : "false") +
+      ", precision: " + nameOf(scene.march.precision) +
       ", level_pixels: " + shortest(scene.march.levelPixels) + " }\n";
   return text;
 }

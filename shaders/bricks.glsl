@@ -28,6 +28,16 @@ uvec4 wordAt(usampler2D index, ivec3 count, ivec3 at) {
 }
 
 uvec2 brickWord(ivec3 brick) { return wordAt(brickIndex, params.brickCount.xyz, brick).rg; }
+// Whether what is skipped is read after all: see walk.glsl.
+#ifndef NPH_CHECK
+#define NPH_CHECK 0
+#endif
+#if NPH_CHECK
+layout(binding = 12) uniform usampler2D storedIndex;  // as brickIndex, of the bricks that are stored alone
+uvec2 storedWord(ivec3 brick) { return wordAt(storedIndex, params.brickCount.xyz, brick).rg; }
+#else
+uvec2 storedWord(ivec3 brick) { return brickWord(brick); }
+#endif
 uint blockWord(ivec3 block) { return wordAt(blockIndex, params.blockCount.xyz, block).r; }
 
 #if NPH_FILTER_EXACT

@@ -6,7 +6,7 @@
 layout(local_size_x = 32) in;
 layout(std140, binding = 0) uniform MarchBlock { MarchParameters params; };
 layout(std430, binding = 1) readonly buffer Blocks { ivec4 blocks[]; };  // those kept, in order of their places
-layout(std430, binding = 2) buffer Cost { uint densitiesRead; };
+layout(std430, binding = 2) buffer Cost { uint densitiesRead; uint checked; uint wrong; };  // the last two: see walk.glsl
 #if NPH_CACHE_FLOAT
 layout(binding = 0, r32f) writeonly uniform image3D columns;
 layout(binding = 1, rgba32f) writeonly uniform image3D skyImage;
@@ -47,7 +47,7 @@ void main() {
   vec3 position = cachePosition(block, local, samples);
   uint place = blockWord(block) - 1u;
   ivec3 texel = samples * ivec3(place & 1023u, (place >> 10u) & 1023u, place >> 20u) + local;
-  vec2 cost = vec2(0.0);
+  vec4 cost = vec4(0.0);
   if (light < 0) {
     vec4 sky0;
     vec4 sky1;
@@ -58,4 +58,6 @@ void main() {
     imageStore(columns, texel + ivec3(0, 0, light * params.cacheShape.z), vec4(columnToCache(light, position, cost)));
   }
   atomicAdd(densitiesRead, uint(cost.x));
+  atomicAdd(checked, uint(cost.z));
+  atomicAdd(wrong, uint(cost.w));
 }

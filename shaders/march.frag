@@ -14,6 +14,9 @@ layout(location = 1) out vec4 outTransmittance;  // transmittance, 1
 layout(location = 2) out vec4 outDepth;          // weighted depth, its weight, densities read, rays cut short
 
 #include "bricks.glsl"
+#if NPH_CHECK
+layout(std430, binding = 3) buffer Skips { uint checked; uint wrong; };  // see walk.glsl
+#endif
 #include "sky.glsl"
 #include "shared/chord.glsl"
 #include "shared/phase.glsl"
@@ -48,6 +51,10 @@ void main() {
   vec3 transmittance = exp(-result.opticalDepth);
   outRadiance = vec4(result.radiance + behind, 1.0 - (transmittance.r + transmittance.g + transmittance.b) / 3.0);
   outTransmittance = vec4(transmittance, 1.0);
+#if NPH_CHECK
+  atomicAdd(checked, uint(result.cost.z));
+  atomicAdd(wrong, uint(result.cost.w));
+#endif
   outDepth = vec4(result.depth, result.depthWeight, result.cost.x, result.cost.y);
 }
 #endif

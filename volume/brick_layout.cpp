@@ -178,6 +178,7 @@ void writeWords(const Cut& cut, const WordOfBrick& words, BrickLayout& layout) {
                     last.x - first.x, word);
     ++layout.bricksOfLevel[static_cast<size_t>(layout.frame.level + brick.rise)];
   }
+  layout.stored = layout.words;
   const Levels levels = occupancy(layout);
   tbb::parallel_for(0, count.z, [&](int z) {
     for (int y = 0; y < count.y; ++y)

@@ -64,12 +64,13 @@ struct AtlasSlab {
 /// Where every brick goes.
 struct BrickLayout {
   Texel texel = Texel::r32f;
-  IndexFrame frame;               // what the index covers
-  int mostRise = 0;               // levels that the coarsest brick lies above the frame's
-  glm::ivec3 size{1};             // of the atlas, texels
-  float maximum = 0.0f;           // no sample exceeds it; codes of maxima are shares of it
-  std::vector<glm::uvec2> words;  // x fastest, as BrickVolume::index
-  std::vector<BrickSlot> slots;   // in the order of their places
+  IndexFrame frame;                // what the index covers
+  int mostRise = 0;                // levels that the coarsest brick lies above the frame's
+  glm::ivec3 size{1};              // of the atlas, texels
+  float maximum = 0.0f;            // no sample exceeds it; codes of maxima are shares of it
+  std::vector<glm::uvec2> words;   // x fastest, as BrickVolume::index
+  std::vector<glm::uvec2> stored;  // the same of bricks with density alone; 0 elsewhere
+  std::vector<BrickSlot> slots;    // in the order of their places
   std::vector<AtlasSlab> slabs;
   double pixels = 0.0;  // that voxels may cover; 0: every brick comes from the finest level
   std::array<size_t, BrickLevels::kMost + 1> bricksOfLevel{};  // bricks with density, by level

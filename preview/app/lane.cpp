@@ -83,6 +83,7 @@ void Lane::beginRest(const LaneTools& tools, const RestGoal& goal) {
   accumulator_.emplace(request_.width, request_.height, wanted_, tools.seed);
   fullSeconds_ = 0.0;
   stats_.densitySamplesPerPixel = 0.0;
+  stats_.skips = {};
   stats_.raysCutShort = 0.0;
   stats_.noise = 0.0;
 }
@@ -100,6 +101,9 @@ bool Lane::work(const LaneTools& tools, double seconds, const RestGoal& goal) {
   const unsigned halt = before < check_ / 2 ? check_ / 2 : check_;
   accumulator_->advance(tools.pass, tools.atlas, *full_, seconds, std::min(halt, wanted_));
   fullSeconds_ += secondsSince(start);
+  const SkipCheck skips = tools.pass.takeSkipCheck();
+  stats_.skips.checked += skips.checked;
+  stats_.skips.wrong += skips.wrong;
   const unsigned whole = accumulator_->wholeSamples();
   if (before == 0 && whole > 0) lookAtFirstSample();
   if (whole != before && whole == check_ / 2) firstHalf_ = full_->radianceSums();

@@ -38,6 +38,7 @@ struct LaneStats {
   double sampleMilliseconds = 0.0;  // one whole sample of every pixel at rest
   double raysCutShort = 0.0;  // by the driver, of the samples so far: the picture is wrong where it is not 0
   double densitySamplesPerPixel = 0.0;  // densities read for one sample of every pixel; 0 until one is whole
+  SkipCheck skips;                      // of all samples so far, where the scene asks for it
   unsigned samples = 0;                 // whole ones, at rest
   unsigned samplesWanted = 0;           // as far as is known
   double noise = 0.0;                   // relative, as last measured; 0 until then

@@ -29,6 +29,7 @@ bool marchWidgets(MarchSettings& march) {
   changed |= widgets::slider("shadow growth", march.shadowGrowth, 1.0, 2.0, "%.2f");
   changed |= ImGui::Checkbox("adaptive steps", &march.adaptive);
   changed |= widgets::slider("give up below", march.giveUp, kLeastGiveUp, kMostGiveUp, "%.0e", true);
+  changed |= ImGui::Checkbox("check what is skipped", &march.checkSkips);
   constexpr double kMostLevelPixels = 8.0;
   changed |= widgets::slider("coarser below", march.levelPixels, 0.0, kMostLevelPixels, "%.2f pixels");
   constexpr const char* kPrecisions = "auto\0r8\0r16f\0r32f\0";  // in the enum's order
@@ -89,6 +90,9 @@ void viewParts(UiState& state, const UiFacts& facts, UiWishes& wishes) {
     wishes.settings |= marchWidgets(state.settings.scene.march);
     wishes.picture |= goalWidgets(state.goal);
     ImGui::TextDisabled("%.0f densities a pixel and sample", facts.stats.densitySamplesPerPixel);
+    if (state.settings.scene.march.checkSkips)
+      ImGui::TextWrapped("%.3g densities checked, bounds wrong for %.0f", facts.stats.skips.checked,
+                         facts.stats.skips.wrong);
   });
 }
 

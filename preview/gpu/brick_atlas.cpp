@@ -29,6 +29,11 @@ Format formatOf(Texel texel) {
   return {GL_R32F, GL_FLOAT};
 }
 
+std::span<const uint32_t> wordsOf(const std::vector<glm::uvec2>& words) {
+  static_assert(sizeof(glm::uvec2) == kWordChannels * sizeof(uint32_t));
+  return {words.empty() ? nullptr : &words[0].x, words.size() * kWordChannels};
+}
+
 uint64_t nextSerial() {
   static std::atomic<uint64_t> last{0};
   return ++last;
@@ -98,10 +103,7 @@ BrickAtlas::BrickAtlas(BrickLayout layout, std::shared_ptr<const BrickAtlas> hea
       serial_(nextSerial()) {
   setVolumeFilter(atlas_.name(), filter);
   uploadAtlas();
-  static_assert(sizeof(glm::uvec2) == kWordChannels * sizeof(uint32_t));
-  const std::span<const uint32_t> words(layout_.words.empty() ? nullptr : &layout_.words[0].x,
-                                        layout_.words.size() * kWordChannels);
-  index_ = makeIndexTexture(words, kWordChannels, gpuBytes_);
+  index_ = makeIndexTexture(wordsOf(layout_.words), kWordChannels, gpuBytes_);
   if (heat_) gpuBytes_ += heat_->gpuBytes();
 }
 
@@ -131,6 +133,12 @@ void BrickAtlas::bind() const {
   if (!heat_) return;
   glBindTextureUnit(kHeatUnit, heat_->atlas_.name());
   glBindTextureUnit(kHeatUnit + 1, heat_->index_.name());
+}
+
+void BrickAtlas::bindStored() const {
+  constexpr GLuint kStoredUnit = 12;
+  if (stored_.name() == 0) stored_ = makeIndexTexture(wordsOf(layout_.stored), kWordChannels, storedBytes_);
+  glBindTextureUnit(kStoredUnit, stored_.name());
 }
 
 }  // namespace nephele

@@ -40,8 +40,10 @@ class BrickAtlas {
 
   /// Binds the atlas to texture unit 0 and the index to unit 1; temperatures to units 10 and 11.
   void bind() const;
+  /// Binds the index of what is stored, without empty cubes, to unit 12; uploads it when first asked.
+  void bindStored() const;
   Filter filter() const { return filter_; }
-  uint64_t gpuBytes() const { return gpuBytes_; }
+  uint64_t gpuBytes() const { return gpuBytes_ + storedBytes_; }
   const BrickLayout& layout() const { return layout_; }
   /// Differs from that of every other atlas of this process.
   uint64_t serial() const { return serial_; }
@@ -54,6 +56,8 @@ class BrickAtlas {
   GlTexture atlas_;
   GlTexture index_;
   std::shared_ptr<const BrickAtlas> heat_;  // of the volume's temperatures, where it has some
+  mutable GlTexture stored_;
+  mutable uint64_t storedBytes_ = 0;
   uint64_t gpuBytes_ = 0;
   uint64_t serial_;
 };

@@ -181,6 +181,7 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, 0.0), 0.0);
   setWalk(p, scene.march, bricks, frame);
   p.counts.w = randomStart ? 1 : 0;
+  p.blockCount.w = scene.march.checkSkips ? 1 : 0;
   p.brickCount = glm::ivec4(frame.brickCount, static_cast<int>(seed));
   return p;
 }

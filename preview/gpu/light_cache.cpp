@@ -2,6 +2,7 @@
 #include "preview/gpu/light_cache.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <limits>
@@ -30,7 +31,7 @@ bool same(const T& a, const T& b) {
 }
 
 bool sameShape(const MarchParameters& a, const MarchParameters& b) {
-  return same(a.cacheShape, b.cacheShape) && a.counts.x == b.counts.x;
+  return same(a.cacheShape, b.cacheShape) && a.counts.x == b.counts.x && a.blockCount.w == b.blockCount.w;
 }
 
 bool sameColumns(const MarchParameters& a, const MarchParameters& b, size_t light) {
@@ -55,8 +56,8 @@ bool sameSky(MarchParameters a, MarchParameters b) {
 
 LightCache::LightCache(Filter filter, const std::vector<TextChange>& changes)
     : floats_(filter == Filter::exact), changes_(changes), cost_(makeBuffer()) {
-  const uint32_t zero = 0;
-  glNamedBufferStorage(cost_.name(), sizeof zero, &zero, GL_DYNAMIC_STORAGE_BIT);
+  const std::array<uint32_t, 3> zeros{};
+  glNamedBufferStorage(cost_.name(), sizeof zeros, zeros.data(), GL_DYNAMIC_STORAGE_BIT);
 }
 
 const GlProgram& LightCache::programFor(const MarchParameters& parameters) {
@@ -64,7 +65,8 @@ const GlProgram& LightCache::programFor(const MarchParameters& parameters) {
   const std::vector<std::string> defines = {floats_ ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
                                             floats_ ? "NPH_CACHE_FLOAT 1" : "NPH_CACHE_FLOAT 0",
                                             flag("NPH_SCALED", parameters.counts.z != 0),
-                                            flag("NPH_LEVELS", parameters.cacheShape.w != 0)};
+                                            flag("NPH_LEVELS", parameters.cacheShape.w != 0),
+                                            parameters.blockCount.w != 0 ? "NPH_CHECK 1" : "NPH_CHECK 0"};
   GlProgram& program = programs_[defines];
   if (program.name() == 0) program = buildComputeProgram("light_cache.comp", defines, changes_);
   return program;
@@ -82,7 +84,7 @@ uint64_t LightCache::blockBytes(Filter filter, const MarchParameters& parameters
 
 void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameters) {
   const BrickLayout& layout = atlas.layout();
-  gpuBytes_ = sizeof(uint32_t);
+  gpuBytes_ = sizeof(std::array<uint32_t, 3>);
   blockTotal_ = static_cast<uint32_t>(layout.blocks.size());
   blockIndex_ = makeIndexTexture(layout.blockWords, 1, gpuBytes_);
   std::vector<glm::ivec4> blocks;
@@ -132,6 +134,7 @@ void LightCache::findTasks(const MarchParameters& parameters) {
 
 void LightCache::fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) {
   atlas.bind();
+  if (known_->blockCount.w != 0) atlas.bindStored();
   glUseProgram(programFor(*known_).name());
   glBindTextureUnit(2, blockIndex_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kBlocksBinding, blocks_.name());
@@ -190,6 +193,17 @@ double LightCache::takeDensitiesRead() {
   const uint32_t zero = 0;
   glNamedBufferSubData(cost_.name(), 0, sizeof zero, &zero);
   return read;
+}
+
+SkipCheck LightCache::takeSkipCheck() { return nephele::takeSkipCheck(cost_, sizeof(uint32_t)); }
+
+SkipCheck takeSkipCheck(const GlBuffer& counts, GLintptr offset) {
+  std::array<uint32_t, 2> values{};
+  glGetNamedBufferSubData(counts.name(), offset, sizeof values, values.data());
+  const SkipCheck check{static_cast<double>(values[0]), static_cast<double>(values[1])};
+  values = {};
+  glNamedBufferSubData(counts.name(), offset, sizeof values, values.data());
+  return check;
 }
 
 }  // namespace nephele

@@ -13,6 +13,14 @@
 
 namespace nephele {
 
+/// What `march: { check_skips: true }` counted.
+struct SkipCheck {
+  double checked = 0.0;  // densities read in what was skipped, and held against the bounds of their bricks
+  double wrong = 0.0;    // of those, above 0, or above the bound
+};
+/// Reads and clears two counts that lie `offset` bytes into a buffer.
+SkipCheck takeSkipCheck(const GlBuffer& counts, GLintptr offset);
+
 /// Textures that hold the samples of shaders/shared/light_cache_fill.glsl and say where each block lies.
 /// Columns are kept as e^(−κ column), κ being MarchParameters::cache.y; the sky's samples depend on the
 /// medium and its phase function as well.
@@ -34,6 +42,8 @@ class LightCache {
   uint64_t gpuBytes() const { return gpuBytes_; }
   /// Densities read for what was filled since the last call.
   double takeDensitiesRead();
+  /// Likewise of those that were read to check what was skipped.
+  SkipCheck takeSkipCheck();
 
  private:
   struct Task {

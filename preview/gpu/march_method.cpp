@@ -79,6 +79,7 @@ class MarchMethod : public Method {
     pass_->setEnvironment(view.environmentMap);
     pass_->prepare(atlas, std::numeric_limits<double>::infinity());
     const double cacheDensities = pass_->takeCacheDensities();
+    SkipCheck skips = pass_->takeSkipCheck();
     cost.millisecondsPreparing = secondsSince(start) * 1e3;
     Accumulator accumulator(width, height, request.samples, request.seed,
                             1.0f / static_cast<float>(request.stride));
@@ -86,6 +87,9 @@ class MarchMethod : public Method {
       Progress progress("rendering", accumulator.pixelsTotal(), request.quiet);
       for (uint64_t before = 0; !accumulator.done();) {
         accumulator.advance(*pass_, atlas, film, kProgressSeconds);
+        const SkipCheck piece = pass_->takeSkipCheck();  // before counts of 32 bits run over
+        skips.checked += piece.checked;
+        skips.wrong += piece.wrong;
         progress.advance(accumulator.pixelsDone() - before);
         before = accumulator.pixelsDone();
       }
@@ -99,6 +103,8 @@ class MarchMethod : public Method {
     cost.volumeBytes = volume_->gpuBytes() + pass_->gpuBytes();
     cost.bricksOfLevel.assign(atlas.layout().bricksOfLevel.begin(), atlas.layout().bricksOfLevel.end());
     while (!cost.bricksOfLevel.empty() && cost.bricksOfLevel.back() == 0) cost.bricksOfLevel.pop_back();
+    cost.skipsChecked = skips.checked;
+    cost.skipsWrong = skips.wrong;
     cost.voxelPixels = atlas.layout().pixels;
     cost.texel = std::string(nameOf(atlas.layout().texel));
     return std::move(result.picture);

@@ -1,6 +1,7 @@
 // Binding and drawing the march. Depends on what its header names.
 #include "preview/gpu/march_pass.h"
 
+#include <array>
 #include <limits>
 
 #include "base/blue_noise.h"
@@ -9,7 +10,7 @@ namespace nephele {
 namespace {
 
 // Locations and bindings as shaders/march.frag and shaders/bricks.glsl declare them.
-constexpr GLuint kParameterBinding = 0, kJitterUnit = 4;
+constexpr GLuint kParameterBinding = 0, kJitterUnit = 4, kSkipsBinding = 3;
 constexpr GLint kSubPixelLocation = 0, kSampleNumberLocation = 1, kSliceLocation = 3;
 constexpr int kTriangleCorners = 3;
 
@@ -28,6 +29,7 @@ std::vector<std::string> definesFor(Filter filter, MarchWrites writes, const sha
           flag("NPH_POWDER", p.powder.x > 0.0f),
           flag("NPH_LOBES", p.phase.z > 0.0f),
           flag("NPH_SCALED", p.counts.z != 0),
+          p.blockCount.w != 0 ? "NPH_CHECK 1" : "NPH_CHECK 0",
           flag("NPH_LEVELS", p.cacheShape.w != 0),
           p.emission.x > 0.0f ? "NPH_HEAT 1" : "NPH_HEAT 0",
           "NPH_SKY " + std::to_string(sky)};
@@ -52,9 +54,12 @@ MarchPass::MarchPass(Filter filter, const std::vector<TextChange>& changes, Marc
       writes_(writes),
       changes_(changes),
       buffer_(makeBuffer()),
+      skips_(makeBuffer()),
       jitter_(makeJitterTile()),
       noVertices_(makeVertexArray()) {
   glNamedBufferStorage(buffer_.name(), sizeof(shared::MarchParameters), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  const std::array<uint32_t, 2> zeros{};
+  glNamedBufferStorage(skips_.name(), sizeof zeros, zeros.data(), GL_DYNAMIC_STORAGE_BIT);
   checkGl("making the parameter buffer");
   program();
 }
@@ -94,6 +99,19 @@ double MarchPass::takeCacheDensities() {
   return cache ? cache->takeDensitiesRead() : 0.0;
 }
 
+SkipCheck MarchPass::takeSkipCheck() {
+  SkipCheck check;
+  if (parameters_.blockCount.w == 0) return check;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  check = nephele::takeSkipCheck(skips_, 0);
+  if (std::optional<LightCache>& cache = caches_[which_]) {
+    const SkipCheck filled = cache->takeSkipCheck();
+    check.checked += filled.checked;
+    check.wrong += filled.wrong;
+  }
+  return check;
+}
+
 void MarchPass::setSlice(int axis, float place) { slice_ = glm::vec2(static_cast<float>(axis), place); }
 
 void MarchPass::draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPixel, unsigned number,
@@ -101,12 +119,14 @@ void MarchPass::draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPix
   if (preparedFor_ != atlas.serial()) prepare(atlas, std::numeric_limits<double>::infinity());
   film.bindAsTarget();
   atlas.bind();
+  if (parameters_.blockCount.w != 0) atlas.bindStored();
   sky_.bind();
   if (caches_[which_]) caches_[which_]->bind();
   glBindTextureUnit(kJitterUnit, jitter_.name());
   glUseProgram(program().name());
   glBindVertexArray(noVertices_.name());
   glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, buffer_.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSkipsBinding, skips_.name());
   glUniform2f(kSubPixelLocation, subPixel.x, subPixel.y);
   glUniform1ui(kSampleNumberLocation, number);
   if (writes_ == MarchWrites::slice) glUniform2f(kSliceLocation, slice_.x, slice_.y);

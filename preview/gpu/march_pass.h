@@ -57,6 +57,8 @@ class MarchPass {
   uint64_t gpuBytes() const;
   /// Densities read to fill the light cache since the last call.
   double takeCacheDensities();
+  /// What was counted of skips since the last call, where the parameters ask for it; waits for the GPU.
+  SkipCheck takeSkipCheck();
 
  private:
   const GlProgram& program();
@@ -68,6 +70,7 @@ class MarchPass {
   std::map<std::vector<std::string>, GlProgram>
       programs_;  // by what each leaves out; built when first needed
   GlBuffer buffer_;
+  GlBuffer skips_;
   GlTexture jitter_;
   SkyTextures sky_;
   GlVertexArray noVertices_;

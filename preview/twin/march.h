@@ -35,6 +35,7 @@ struct March {
     const float kept = bricks->density(word, keptPosition(word, position), wordSamples(word));
     return params.counts.z != 0 ? kept * wordMaximum(word) : kept;
   }
+  uvec2 storedWord(ivec3 brick) const { return bricks->word(brick); }
   uint blockWord(ivec3 block) const { return bricks->block(block); }
   float cachedColumn(vec3 texel) const { return bricks->column(texel); }
   vec4 cachedSky(int part, vec3 texel) const { return bricks->sky(part, texel); }
@@ -48,6 +49,7 @@ struct March {
 
 #define NPH_EMISSION (params.emission.x > 0.0f)
 #define NPH_CACHED (params.cache.x > 0.0f)
+#define NPH_CHECK 0
 #define NPH_LEVELS (params.cacheShape.w != 0)
 #define NPH_NEAR (params.cache.w > 0.0f)
 #define NPH_POINTS true
@@ -63,6 +65,7 @@ struct March {
 #include "shaders/shared/walk.glsl"
 #undef NPH_CACHED
 #undef NPH_EMISSION
+#undef NPH_CHECK
 #undef NPH_LEVELS
 #undef NPH_NEAR
 #undef NPH_POINTS

@@ -106,7 +106,7 @@ void fillCache(ArraySource& source, const March<ArraySource>& march) {
         fill(place * samples + local, mine.cachePosition(block, local, samples));
       }
     };
-    vec2 cost(0.0f);
+    vec4 cost(0.0f);
     for (int light = 0; columns && light < p.counts.x; ++light)
       each(p.cacheShape.x, [&](const ivec3& texel, const vec3& position) {
         source.columns.at(texel + ivec3(0, 0, light * p.cacheShape.z)) =

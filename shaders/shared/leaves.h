@@ -39,7 +39,7 @@ template <class Layout>
 void describeLayout(MarchParameters& p, const Layout& layout) {
   p.walk.y = layout.maximum;
   p.counts.z = layout.scaled() ? 1 : 0;
-  p.blockCount = ivec4(layout.blockCount, 0);
+  p.blockCount = ivec4(layout.blockCount, p.blockCount.w);
   p.cacheShape.z = layout.blockPlaces.z * p.cacheShape.x;
   p.cacheShape.w = layout.mostRise > 0 ? 1 : 0;
 }

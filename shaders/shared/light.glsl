@@ -88,7 +88,7 @@ NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
 }
 
 // ∫ ρ ds from a point to a light, by the way that the scene chooses: marched, or the chord at the mean density.
-NPH_FN float columnTowards(vec3 position, vec3 direction, float reach, float enough, float start, NPH_INOUT(vec2) cost) {
+NPH_FN float columnTowards(vec3 position, vec3 direction, float reach, float enough, float start, NPH_INOUT(vec4) cost) {
   if (params.chordRadii.w > 0.0f)
     return params.chordCentre.w *
            ellipsoidChord(position, direction, vec3(params.chordCentre), vec3(params.chordRadii), reach);
@@ -106,7 +106,7 @@ NPH_FN float powderAt(vec3 position, float rho) {
 // the ray, `number` the picture's samples. What the light cache holds is taken from there: NPH_CACHED is true where it has the
 // lights' columns, NPH_NEAR where the way to it is marched; NPH_SKY is 0 where there is no sky, 1 where the cache has it, 2 where it is marched for.
 NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
-                         NPH_INOUT(vec2) cost) {
+                         NPH_INOUT(vec4) cost) {
   vec3 sum = vec3(0.0f);
   int count = params.counts.x + (NPH_SKY == 2 ? 1 : 0);
   int done = 0;

@@ -22,7 +22,7 @@ NPH_FN vec3 cacheTexel(vec3 position, int samples) {
 
 // ∫ ρ ds from `position`, in a block that is kept, to light `light`, world units: the first voxels read, where the cloud shades
 // itself most finely, the rest from the cache. `reach` as columnDensity's; `start` is the share of a step at which it is read.
-NPH_FN float lightColumn(int light, vec3 position, vec3 direction, float reach, float start, NPH_INOUT(vec2) cost) {
+NPH_FN float lightColumn(int light, vec3 position, vec3 direction, float reach, float start, NPH_INOUT(vec4) cost) {
   float way = 0.0f;
   vec3 texel = cacheTexel(position, params.cacheShape.x);
   if (NPH_NEAR) {

@@ -8,7 +8,7 @@ NPH_FN vec3 cachePosition(ivec3 block, ivec3 local, int samples) {
 }
 
 // The whole column from a position to a light, in units of params.cache.y.
-NPH_FN float columnToCache(int light, vec3 position, NPH_INOUT(vec2) cost) {
+NPH_FN float columnToCache(int light, vec3 position, NPH_INOUT(vec4) cost) {
   Lighting l = lightingFrom(light, position);
   return exp(-params.cache.y * columnDensity(position, l.toLightIndex, l.reach, 17.0f / params.cache.y, vec2(params.cacheSteps), 0.5f, cost));
 }
@@ -23,7 +23,7 @@ NPH_FN vec3 skyDirection(int i) {
 
 // What the sky scatters at a position towards a ray, per unit density and before σ_s, to first order in the ray's direction
 // (the phase function's and the sky's first two bands of spherical harmonics): sky0.rgb + dot(sky1.xyz, ray) · sky0.rgb.
-NPH_FN void skyToCache(vec3 position, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NPH_INOUT(vec2) cost) {
+NPH_FN void skyToCache(vec3 position, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NPH_INOUT(vec4) cost) {
   float enough = columnThatHides(1e-3f);  // of a sky that comes from all sides, less is not seen
   vec3 even = vec3(0.0f);
   vec3 slope = vec3(0.0f);

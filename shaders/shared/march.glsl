@@ -13,7 +13,8 @@ struct MarchResult {
   vec3 opticalDepth;   // of the whole ray, or up to where it was given up, per channel
   float depth;         // world distance from the camera, weighted by what each step takes from the view; 0 without medium
   float depthWeight;   // that weight's sum: 1 − transmittance, mean over channels
-  vec2 cost;           // x: densities read: view, shadow and sky. y: 1 where a driver ended a loop before its time
+  vec4 cost;           // x: densities read: view, shadow and sky. y: 1 where a driver ended a loop before its time. z, w: see
+                       // checkSkipped
 };
 
 // Length of a step inside a brick, world units; `shortest` is that of the setting. Longer where what the step may take of the
@@ -42,7 +43,7 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
   result.opticalDepth = vec3(0.0f);
   result.depth = 0.0f;
   result.depthWeight = 0.0f;
-  result.cost = vec2(0.0f);
+  result.cost = vec4(0.0f);
   vec3 rayLong = vec3(params.rayCorner) + at.x * vec3(params.rayDx) + at.y * vec3(params.rayDy);
   float stretch = length(rayLong);
   vec3 ray = rayLong / stretch;
@@ -78,7 +79,10 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
       tEnd = min(tFar, t + margin + max(0.0f, way));
       float steps = ceil((tEnd - t) / stepIn(word, params.sigmaS.w * size * voxel, max(before.x, max(before.y, before.z))));
       dt = (tEnd - t) / max(steps, 1.0f);
-      if (wordIsEmpty(word)) t = tEnd;
+      if (wordIsEmpty(word)) {
+        checkSkipped(origin, direction, t + 2.0f * margin, min(tEnd, t + max(0.0f, way)) - margin, params.sigmaS.w * voxel, result.cost);
+        t = tEnd;
+      }
     }
     vec3 share = vec3(0.0f);  // of the view, in these steps: ∫ e^(−τ) ρ ds
     float place = 0.0f;       // its mean distance along the ray, times its mean over channels
@@ -87,6 +91,7 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
       float middle = t + start * dt;
       float rho = brickDensity(word, (origin + middle * direction - corner) / size);
       result.cost.x += 1.0f;
+      checkBound(word, rho, result.cost);
       vec3 x = (rho * dt) * vec3(params.sigmaT);
       vec3 weight = before * (rho * dt) * stepIntegral(x);
       vec3 scattering = powderAt(origin + middle * direction, rho) * weight;

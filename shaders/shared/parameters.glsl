@@ -61,7 +61,7 @@ struct MarchParameters {
   vec4 cacheSteps;   // first step, voxels, and growth of those that fill the cache: x, y for columns, z, w for the sky
   ivec4 cacheShape;  // x: samples along a block's edge, columns. y: the same, sky; 0: no sky there. z: texels along z a light.
                      // w: 1 where bricks are of several levels
-  ivec4 blockCount;  // blocks of the light cache along each axis
+  ivec4 blockCount;  // blocks of the light cache along each axis. w: 1 where skips are checked
   ivec4 counts;      // x: lights. y: octaves beyond the first. z: 1 where samples are kept as shares of their
                      // brick's bound. w: 1 where steps start at random, 0 midway
   ivec4 brickCount;  // bricks along each axis. w: seed

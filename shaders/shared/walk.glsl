@@ -2,6 +2,7 @@
 // GLSL's global scope, and in C++ inside a struct, which provide
 //   MarchParameters params;
 //   uvec2 brickWord(ivec3 brick);                    of a brick inside the index: see volume/brick_layout.h
+//   uvec2 storedWord(ivec3 brick);                   the same without empty cubes: asked where NPH_CHECK is 1
 //   float brickDensity(uvec2 word, vec3 position);   trilinear; position in [0, 8] from the brick's corner, in its voxels
 
 NPH_CONST float kBrickEdge = 8.0f;
@@ -52,6 +53,30 @@ NPH_FN float wayOut(vec3 position, vec3 direction, vec3 corner, float size) {
   return way;
 }
 
+// A debug mode, where NPH_CHECK is 1: what was skipped is read after all, from an index that says of each brick alone where it
+// lies (storedWord, as brickWord), and what was read is held against its brick's bound. cost.z counts the densities that
+// were checked so, cost.w those of them that should have been 0, or less.
+NPH_FN void checkDensity(vec3 position, NPH_INOUT(vec4) cost) {
+  ivec3 brick = ivec3(floor(position / kBrickEdge));
+  if (isOutside(brick)) return;
+  uvec2 word = storedWord(brick);
+  int edge = wordEdge(word);
+  float rho = wordIsEmpty(word) ? 0.0f : brickDensity(word, (position - cubeCorner(brick, edge)) / float(edge));
+  cost.z += 1.0f;
+  cost.w += rho > 0.0f ? 1.0f : 0.0f;
+}
+
+NPH_FN void checkSkipped(vec3 origin, vec3 direction, float from, float to, float step, NPH_INOUT(vec4) cost) {
+  for (float t = from + 0.5f * step; NPH_CHECK == 1 && t < to; t += step) checkDensity(origin + t * direction, cost);
+}
+
+NPH_FN void checkBound(uvec2 word, float rho, NPH_INOUT(vec4) cost) {
+  if (NPH_CHECK != 1) return;
+  cost.z += 1.0f;
+  // Mixing rounds.
+  cost.w += rho > 1.00001f * wordMaximum(word) ? 1.0f : 0.0f;
+}
+
 // Density at an index-space position. Where it is empty there, `toExit` becomes the number of `stride`s from there to the far
 // face of the largest known empty cube, over which all densities are 0; otherwise it is 0.
 NPH_FN float densityAndExit(vec3 position, vec3 stride, NPH_OUT(float) toExit) {
@@ -81,7 +106,7 @@ NPH_FN float voxelAt(vec3 position) {
 // reading them, on the same steps. `steps` is the first one's length, voxels of the brick at the origin, and the growth of each over the one before. Gives
 // up, with what it has, once it exceeds `enough`.
 NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enough, vec2 steps, float start,
-                           NPH_INOUT(vec2) cost) {
+                           NPH_INOUT(vec4) cost) {
   float tNear = 0.0f;
   float tFar = 0.0f;
   if (!intersectBox(origin, direction, vec3(params.boxMin), vec3(params.boxMax), tNear, tFar)) return 0.0f;
@@ -105,6 +130,7 @@ NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enoug
     // Steps whose reading lies in the same empty cube, a thousandth of a step before its end at most.
     float end = min(middle + toExit, tFar) - 1e-3f * dt;
     while (t + start * dt < end) {
+      if (NPH_CHECK == 1) checkDensity(origin + (t + start * dt) * direction, cost);
       t += dt;
       dt *= growth;
     }
