@@ -2,6 +2,7 @@
 #include "bake/field_specs.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "base/files.h"
@@ -15,6 +16,17 @@ std::string inQuotes(std::string_view text) { return "'" + std::string(text) + "
 // Fields are built, bounded and evaluated by functions that call each other as deep; names and aliases count
 // too.
 constexpr int kMostNested = 100;
+
+// A field that a name or an alias stands for is evaluated at each use: 14 sums of eight of the one before
+// come to 10^12. Samples have below 60.
+constexpr double kMostUses = 10000.0;
+
+std::string tooMany(double uses) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", uses);
+  return std::string("this comes to ") + text +
+         " fields, counting each use of a name or an alias; more than 10000 are not evaluated";
+}
 
 std::string tooDeep() { return "fields are nested deeper than " + std::to_string(kMostNested) + " levels"; }
 
@@ -218,9 +230,16 @@ FieldSpecPtr FieldReader::readRow(const FieldRow& row, const yaml::Node& body, c
   }
   if (!good || !validate(row, *spec, body)) return nullptr;
   for (const auto& [name, children] : spec->children)
-    for (const FieldSpecPtr& child : children) spec->height = std::max(spec->height, child->height + 1);
+    for (const FieldSpecPtr& child : children) {
+      spec->height = std::max(spec->height, child->height + 1);
+      spec->uses += child->uses;
+    }
   if (spec->height > kMostNested) {
     out_.add(where, tooDeep());
+    return nullptr;
+  }
+  if (spec->uses > kMostUses) {
+    out_.add(where, tooMany(spec->uses));
     return nullptr;
   }
   return spec;

@@ -22,8 +22,9 @@ struct FieldSpec {
   SourceLocation where;
   std::map<std::string, Value, std::less<>> values;  // all but child fields
   std::map<std::string, std::vector<std::shared_ptr<const FieldSpec>>, std::less<>>
-      children;                                               // field and fields
-  int height = 1;                                             // fields above each other, this one included
+      children;       // field and fields
+  int height = 1;     // fields above each other, this one included
+  double uses = 1.0;  // fields evaluated for one value: each use of one counts
   std::map<std::string, SourceLocation, std::less<>> places;  // of the parameters that the recipe gives
 };
 using FieldSpecPtr = std::shared_ptr<const FieldSpec>;

@@ -148,8 +148,9 @@ TEST(Pipeline, RefusesWhatIsContradictoryOrNotBuilt) {
             std::string::npos);
   EXPECT_NE(onlyComplaint("assets: { a: { tolerance: 120%, density: 1 } }").find("between 0 and 100%"),
             std::string::npos);
-  EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, particles: {} } }").find("at least one of 'emitters'"),
-            std::string::npos);
+  EXPECT_NE(
+      onlyComplaint("assets: { a: { voxel_size: 1, particles: {} } }").find("at least one of 'emitters'"),
+      std::string::npos);
   EXPECT_NE(onlyComplaint("assets: { cloud_9: { voxel_size: 1, density: 1 } }").find("no digit at the end"),
             std::string::npos);
   EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, density: 1, frames: 8-2 } }").find("A-B"),
@@ -163,25 +164,33 @@ TEST(Pipeline, ACycleIsAnErrorWithItsPath) {
   EXPECT_NE(list[0].find("a -> b -> c -> a"), std::string::npos) << list[0];
 }
 
-TEST(Pipeline, AliasesOfAliasesStayCheap) {
-  // 2^40 leaves if every path were walked, in sums and in mixes.
-  std::string text = "fields:\n  f00: &f00 { add: [1, 1] }\n";
-  for (int n = 1; n <= 40; ++n) {
-    char line[96];
-    std::snprintf(line, sizeof line, "  f%02d: &f%02d { add: [*f%02d, *f%02d] }\n", n, n, n - 1, n - 1);
-    text += line;
+/// Named fields f00 to f`last`, each made by `line` of two of the one before.
+std::string doubling(const char* line, int last) {
+  std::string text;
+  for (int n = 1; n <= last; ++n) {
+    char filled[96];
+    std::snprintf(filled, sizeof filled, line, n, n, n - 1, n - 1);
+    text += filled;
   }
-  text += "  m00: &m00 { mix: { a: 1, b: 1, t: 1 } }\n";
-  for (int n = 1; n <= 40; ++n) {
-    char line[96];
-    std::snprintf(line, sizeof line, "  m%02d: &m%02d { mix: { a: *m%02d, b: *m%02d, t: 1 } }\n", n, n, n - 1,
-                  n - 1);
-    text += line;
+  return text;
+}
+
+TEST(Pipeline, AliasesOfAliasesAreCountedAndRefused) {
+  // 2^40 fields if every path were walked, in sums and in mixes, by aliases and by names.
+  const std::pair<const char*, const char*> bombs[] = {
+      {"  f00: &f00 { add: [1, 1] }\n", "  f%02d: &f%02d { add: [*f%02d, *f%02d] }\n"},
+      {"  f00: &f00 sphere\n", "  f%02d: &f%02d { mix: { a: *f%02d, b: *f%02d, t: 1 } }\n"},
+      {"  f00: &f00 sphere\n", "  f%02d: &f%02d { add: [f%02d, f%02d] }\n"}};
+  for (const auto& [first, line] : bombs) {
+    const std::string fields = std::string("fields:\n") + first;
+    const auto list = complaints(fields + doubling(line, 40) + withDensity("f40"));
+    ASSERT_EQ(list.size(), 1u);
+    EXPECT_NE(list[0].find("fields, counting each use of a name or an alias"), std::string::npos) << list[0];
+    // 2^10 are legal, each built once.
+    const Pipeline pipeline = load(fields + doubling(line, 10) + withDensity("f10"));
+    EXPECT_NE(buildField(*pipeline.assets.front().density, {0.1, 2, 0, nullptr}), nullptr);
+    EXPECT_EQ(recipeHash(pipeline, pipeline.assets.front()).size(), 32u);
   }
-  const Pipeline pipeline = load(text + withDensity("{ multiply: [sphere, *f40, *m40] }"));
-  const FieldPtr field = buildField(*pipeline.assets.front().density, {0.1, 2, 0, nullptr});
-  EXPECT_NE(field, nullptr);
-  EXPECT_EQ(recipeHash(pipeline, pipeline.assets.front()).size(), 32u);
 }
 
 TEST(Pipeline, RefusesFieldsNestedTooDeepThroughNames) {

@@ -55,6 +55,18 @@ def wrong_particles(old, new, *stderr, files=None):
     return Case("bake pipeline.yaml", (2,), stderr, recipe=PARTICLES.replace(old, new), files=files or {}, note=repr(new))
 
 
+def with_density(text, fields=""):
+    """The good recipe of another density, with named fields before it."""
+    return fields + GOOD_RECIPE.replace(SPHERE, text)
+
+
+SPHERE = "sphere: { radius: 1.0, falloff: 0.5 }"
+DEEP = "add: [{ " * 10000 + "sphere" + " }]" * 10000
+# Eight of the one before, 14 times: 10^12 fields in two kilobytes.
+BOMB = "fields:\n  f0: sphere\n" + "".join(f"  f{n}: {{ add: [{', '.join([f'f{n - 1}'] * 8)}] }}\n" for n in range(1, 15))
+ALIAS_BOMB = "fields:\n  f0: &f0 { sphere: {} }\n" + "".join(
+    f"  f{n}: &f{n} {{ add: [{', '.join([f'*f{n - 1}'] * 8)}] }}\n" for n in range(1, 15))
+
 BURST = "bursts: [[0, 40]]"
 POINTS = "shape: points, file: points.csv"
 
@@ -95,6 +107,22 @@ BAKE = [
     wrong("voxel_size: 0.1", "voxel_size: 0.0000001", "pipeline.yaml:", "error:", "voxels"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "constant: { value: 1 }", "pipeline.yaml:", "error:"),
     wrong("sphere: { radius: 1.0, falloff: 0.5 }", "multiply: [ sphere, 1e6 ]", "pipeline.yaml:", "error:", "65504"),
+    wrong(SPHERE, "sphere: { radius: .inf }", "pipeline.yaml:6:25: error: 'radius' of 'sphere' must be a finite number"),
+    wrong(SPHERE, "sphere: { radius: 0 }", "pipeline.yaml:6:25: error: 'radius' of 'sphere' must be greater than 0, found 0"),
+    wrong(SPHERE, "box: { size: [1, 0, 1] }", "pipeline.yaml:6:24: error: 'size' of 'box' must be greater than 0, found 0"),
+    wrong(SPHERE, "sphere: { radius: 1 m }", "pipeline.yaml:6:25: error: 'radius' of 'sphere' must be a number, found '1 m'"),
+    wrong(SPHERE, "remap: { from: [1, 1], input: sphere }", "pipeline.yaml:6:16: error: both ends of 'from' are equal"),
+    wrong("voxel_size: 0.1", "voxel_size: 0.0001", "pipeline.yaml:", "holds 8e+12 voxels (3.2e+04 GB if dense)"),
+    says("bake pipeline.yaml", 2, "pipeline.yaml:3:14: error: a field cannot be made of itself: a -> b -> a",
+         recipe=with_density("a", "fields:\n  a: { add: [b, 1] }\n  b: { max: [a] }\n"), note="a cycle"),
+    says("bake pipeline.yaml", 2, "pipeline.yaml:", "error: nested deeper than 200 levels", recipe=with_density(DEEP),
+         note="10,000 levels"),
+    says("bake pipeline.yaml", 2, "fields, counting each use of a name", recipe=with_density("f14", BOMB), note="a bomb"),
+    says("bake pipeline.yaml", 2, "fields, counting each use of a name", recipe=with_density("f14", ALIAS_BOMB),
+         note="a bomb of aliases"),
+    says("bake pipeline.yaml", 2, "pipeline.yaml:4:17: error:", "pipeline.yaml:6:15: error: unknown field 'sphre'",
+         "pipeline.yaml:6:30: error: unknown field 'perlim'", recipe=GOOD_RECIPE.replace("0.1", "-1").replace(
+             SPHERE, "union: [sphre, { max: [perlim] }]"), note="all errors at once"),
     # particles
     prints("bake pipeline.yaml --dry-run --frames 2-3", "out/puff_0002.vdb\nout/puff_0003.vdb", recipe=PARTICLES),
     says("bake pipeline.yaml --frames 1-2 --shard 2/2", 0, "puff_0002.vdb", "40 particles", recipe=PARTICLES),
