@@ -50,11 +50,15 @@ uint64_t mostActive(const Frames& frames) {
   return most;
 }
 
+/// Over the largest depth of all frames: a sequence is seen under one light, whatever its first frame holds.
 double errorOf(const Frames& reference, const Frames& look, uint64_t rays, uint64_t seed) {
-  double worst = 0.0;
-  for (size_t n = 0; n < look.size(); ++n)
-    worst = std::max(worst, depthDifference(reference[n].bricks, look[n].bricks, rays, seed).relative());
-  return worst;
+  DepthDifference worst;
+  for (size_t n = 0; n < look.size(); ++n) {
+    const DepthDifference d = depthDifference(reference[n].bricks, look[n].bricks, rays, seed);
+    worst.largest = std::max(worst.largest, d.largest);
+    worst.largestA = std::max(worst.largestA, d.largestA);
+  }
+  return worst.relative();
 }
 
 class Search {

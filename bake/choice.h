@@ -17,7 +17,7 @@ struct ChoiceTrial {
   double voxelSize = 0.0;
   Precision precision = Precision::single;
   int mostOctaves = kAllOctaves;
-  double error = 0.0;  // largest depth difference over the largest depth
+  double error = 0.0;  // largest depth difference over the largest depth of all frames
   uint64_t voxelsActive = 0;
 };
 
@@ -48,7 +48,7 @@ Choice chooseFor(const Pipeline& pipeline, const Asset& asset, const std::string
 std::string choiceAsText(const Choice& choice);
 
 /// The largest depth difference along `rays` rays of `seed` between two looks of an asset, over the largest
-/// depth of `reference`; the worst of the asset's sampled frames.
+/// depth of `reference`, both over all of the asset's sampled frames.
 double depthError(const Pipeline& pipeline, const Asset& reference, const Asset& look, uint64_t rays,
                   uint64_t seed, const std::string& outFolder);
 

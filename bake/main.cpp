@@ -6,6 +6,7 @@
 #include <iostream>
 #include <thread>
 
+#include "bake/cost_chart.h"
 #include "bake/nodes.h"
 #include "bake/run.h"
 #include "base/error.h"
@@ -96,6 +97,22 @@ int diff(const Command& command) {
   return tolerance >= 0.0 && over ? kExitNo : kExitDone;
 }
 
+int chart(const Command& command) {
+  const Pipeline pipeline = loadPipeline(command.pipeline);
+  BakeOptions options = command.options;
+  if (options.only.empty() && pipeline.assets.size() == 1) options.only = {pipeline.assets.front().name};
+  if (options.only.size() != 1)
+    throw InputError({pipeline.path, 0, 0}, "a chart is of one asset; name it by --only");
+  const Asset& asset = *selectJobs(pipeline, options).front().asset;
+  makeFolder(options.outFolder);
+  const CostChart measured = measureCosts(pipeline, asset, options.outFolder, options.quiet);
+  const std::string sentence = writeCostChart(options.outFolder, measured);
+  for (const std::string& what : measured.leftOut) std::cerr << "left out: " << what << '\n';
+  if (!sentence.empty()) std::cerr << "warning: " << sentence << '\n';
+  std::cout << costFrontAsText(measured);
+  return kExitDone;
+}
+
 int notBuilt(const std::string& name) {
   throw InputError({}, "'nephele-bake " + name + "' is not built yet");
 }
@@ -139,7 +156,19 @@ int run(int argc, char** argv) {
           "Largest density, optical-depth and velocity difference, relative to A's largest: 0.03 or 3%")
       ->type_name("E");
   diffCommand->add_flag("--json", command.json, "As JSON");
-  for (const char* const name : {"check", "chart"})
+  CLI::App* const chartCommand = app.add_subcommand(
+      "chart", "Density and optical-depth error against seconds, bytes and memory of one asset's bake");
+  chartCommand->add_option("PIPELINE", command.pipeline, "Recipe");
+  chartCommand
+      ->add_option("--only", command.options.only, "The asset; may be left out where there is one alone")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  chartCommand
+      ->add_option("--out", command.options.outFolder, "Folder for chart.csv, .svg, .png and index.html")
+      ->type_name("DIR");
+  chartCommand->add_flag("--quiet", command.options.quiet, "Say nothing but errors and warnings");
+  for (const char* const name : {"check"})
     app.add_subcommand(name, "Not built yet")->allow_extras()->callback([name] { notBuilt(name); });
   try {
     app.parse(argc, argv);
@@ -151,6 +180,7 @@ int run(int argc, char** argv) {
   if (infoCommand->parsed()) return info(command);
   if (nodesCommand->parsed()) return nodes(command);
   if (diffCommand->parsed()) return diff(command);
+  if (chartCommand->parsed()) return chart(command);
   return bake(command);
 }
 

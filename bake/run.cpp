@@ -256,12 +256,6 @@ const Choice& settle(const Pipeline& pipeline, const Asset& asset, const BakeOpt
   return choice;
 }
 
-void makeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw WorldError("cannot make the folder '" + folder + "': " + error.message());
-}
-
 }  // namespace
 
 std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& options) {
@@ -295,6 +289,12 @@ std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& opt
   for (size_t n = 0; n < jobs.size(); ++n)
     if (int(n % size_t(options.shard.count)) == options.shard.index - 1) mine.push_back(jobs[n]);
   return mine;
+}
+
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw WorldError("cannot make the folder '" + folder + "': " + error.message());
 }
 
 std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& options) {

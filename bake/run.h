@@ -73,6 +73,9 @@ std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& opt
 /// size are those of this recipe is left as it is. Sentences go to stderr. Throws InputError or WorldError.
 std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& options);
 
+/// Makes the folder and those above it where they are missing. Throws WorldError.
+void makeFolder(const std::string& folder);
+
 /// The report of DESIGN.md, section 1: assets[{name, file, frame, seconds{…}, …}].
 std::string reportAsJson(const std::vector<BakeRecord>& records);
 

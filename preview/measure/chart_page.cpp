@@ -5,13 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 
 #include "base/chart.h"
-#include "base/error.h"
 #include "base/files.h"
+#include "base/html.h"
 
 namespace nephele {
 namespace {
@@ -26,21 +25,6 @@ std::string percent(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g%%", 100.0 * value);
   return text;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += c;
-  }
-  return out;
 }
 
 bool onFront(const SweepResult& result, size_t setting) {
@@ -160,19 +144,13 @@ Picture differenceOf(const Picture& picture, const Picture& truth) {
 std::string pageOf(const std::string& folder, const std::string& title, const SweepResult& result,
                    float exposureEv, bool drawn) {
   std::ostringstream page;
-  page << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>" << escaped(title)
-       << "</title><style>body{font:15px sans-serif;margin:2em;max-width:1500px}td,th{padding:2px "
-          "10px;text-align:left}"
-          "img{image-rendering:pixelated;width:256px}.knee{font-weight:bold}figure{display:inline-block;"
-          "margin:8px}</style><h1>"
-       << escaped(title) << "</h1>\n";
   if (drawn) page << readWhole(folder + "/chart.svg");
   page << "<h2>The Pareto front</h2><table><tr><th>setting<th>ms<th>relative RMSE<th>95% "
           "interval<th>bias<th>p99</tr>\n";
   for (const size_t i : result.front) {
     const Measured& m = result.all[i];
     const bool knee = isKnee(result, m.setting);
-    page << (knee ? "<tr class=\"knee\"><td>" : "<tr><td>") << escaped(result.settings[m.setting].name)
+    page << (knee ? "<tr class=\"knee\"><td>" : "<tr><td>") << htmlEscaped(result.settings[m.setting].name)
          << (knee ? " (knee)" : "") << "<td>" << number(m.milliseconds) << "<td>"
          << percent(m.error.relativeRmse) << "<td>" << percent(m.error.low) << " to " << percent(m.error.high)
          << "<td>" << percent(m.error.bias) << "<td>" << percent(m.error.p99) << "</tr>\n";
@@ -188,15 +166,15 @@ std::string pageOf(const std::string& folder, const std::string& title, const Sw
     if (at == result.settings.end() || !onFront(result, static_cast<size_t>(at - result.settings.begin())))
       continue;
     page << "<figure>" << imageOf(folder, shot.picture, exposureEv) << "<br>"
-         << imageOf(folder, differenceOf(shot.picture, truth), 0.0f) << "<figcaption>" << escaped(shot.name)
-         << "</figcaption></figure>\n";
+         << imageOf(folder, differenceOf(shot.picture, truth), 0.0f) << "<figcaption>"
+         << htmlEscaped(shot.name) << "</figcaption></figure>\n";
   }
   if (!result.leftOut.empty()) {
     page << "<h2>Left out for want of time</h2><ul>";
-    for (const std::string& what : result.leftOut) page << "<li>" << escaped(what);
+    for (const std::string& what : result.leftOut) page << "<li>" << htmlEscaped(what);
     page << "</ul>\n";
   }
-  return page.str() + "</html>\n";
+  return htmlPage(title, page.str());
 }
 
 }  // namespace
@@ -220,14 +198,7 @@ std::string writeChart(const std::string& folder, const std::string& title, cons
       panelOf(result, "by samples", "samples a pixel", false,
               [&](const Measured& m) { return static_cast<double>(result.settings[m.setting].samples); })};
   const std::string sentence = drawChart(panels, folder, "chart");
-  const std::string page = pageOf(folder, title, result, exposureEv, sentence.empty());
-  const std::string path = folder + "/index.html";
-  writeWhole(path, [&](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << page;
-    out.close();
-    if (!out) throw WorldError("cannot write '" + path + "'");
-  });
+  writeText(folder + "/index.html", pageOf(folder, title, result, exposureEv, sentence.empty()));
   return sentence;
 }
 

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/front.h"
 #include "base/progress.h"
 #include "scene/light_model.h"
 
@@ -192,37 +193,20 @@ std::vector<SweepView> viewsFor(const ViewedScene& view) {
   return views;
 }
 
-std::vector<size_t> paretoFront(const std::vector<Measured>& points) {
-  std::vector<size_t> order(points.size());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-    return std::pair(points[a].milliseconds, points[a].error.relativeRmse) <
-           std::pair(points[b].milliseconds, points[b].error.relativeRmse);
-  });
-  std::vector<size_t> front;
-  for (const size_t i : order)
-    if (front.empty() || points[i].error.relativeRmse < points[front.back()].error.relativeRmse)
-      front.push_back(i);
-  return front;
+namespace {
+
+std::vector<CostAndError> costsOf(const std::vector<Measured>& points) {
+  std::vector<CostAndError> costs;
+  for (const Measured& m : points) costs.push_back({m.milliseconds, m.error.relativeRmse});
+  return costs;
 }
 
+}  // namespace
+
+std::vector<size_t> paretoFront(const std::vector<Measured>& points) { return paretoFront(costsOf(points)); }
+
 size_t kneeOf(const std::vector<Measured>& points, const std::vector<size_t>& front) {
-  if (front.size() < 3) return 0;
-  constexpr double kLeast = 1e-9;  // keeps an error of 0 on the axis
-  const auto x = [&](size_t i) { return std::log(std::max(points[front[i]].milliseconds, kLeast)); };
-  const auto y = [&](size_t i) { return std::log(std::max(points[front[i]].error.relativeRmse, kLeast)); };
-  const size_t last = front.size() - 1;
-  const double dx = x(last) - x(0), dy = y(last) - y(0);
-  size_t knee = 0;
-  double farthest = 0.0;
-  for (size_t i = 1; i < last; ++i) {
-    const double below = (x(i) - x(0)) * dy - (y(i) - y(0)) * dx;  // > 0 below the line, times its length
-    if (below > farthest) {
-      farthest = below;
-      knee = i;
-    }
-  }
-  return knee;
+  return kneeOf(costsOf(points), front);
 }
 
 SweepResult sweep(const BrickVolume& bricks, const ViewedScene& given, const SweepOptions& asked) {

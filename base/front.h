@@ -1,0 +1,21 @@
+// What is worth its cost: the Pareto front of costs and errors, and its knee. Depends on nothing.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace nephele {
+
+struct CostAndError {
+  double cost = 0.0, error = 0.0;
+};
+
+/// Indices of the points that no other beats in both, by growing cost and falling error. Of equal points the
+/// first stands for all.
+std::vector<size_t> paretoFront(const std::vector<CostAndError>& points);
+
+/// The place in `front` of the point farthest below the line between its ends, on logarithmic axes; 0 where
+/// the front has no points between its ends.
+size_t kneeOf(const std::vector<CostAndError>& points, const std::vector<size_t>& front);
+
+}  // namespace nephele

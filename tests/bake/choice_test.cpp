@@ -1,0 +1,152 @@
+// Tolerances: they hold on rays that were not measured, choose no finer than needed, and stand in the file.
+#include "bake/choice.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "bake/cost_chart.h"
+#include "bake/run.h"
+#include "tests/scratch_folder.h"
+#include "volume/vdb_header.h"
+
+namespace nephele::test {
+namespace {
+
+constexpr const char* kSphere = "sphere: { radius: 1, falloff: 0.6 }";
+constexpr const char* kNoise =
+    "multiply: [{ sphere: { radius: 1, falloff: 0.8 } }, { remap: { from: [-0.5, 0.5], to: [0, 1], input: "
+    "{ fbm: { cell_size: 0.7, octaves: 6, gain: 0.3 } } } }]";
+constexpr uint64_t kOtherRays = 7;
+
+class ChoiceTest : public ::testing::Test {
+ protected:
+  Pipeline recipe(const std::string& density, const std::string& keys) {
+    const std::string path = scratch_.file("recipe.yaml");
+    std::ofstream(path) << "assets:\n  cloud:\n    " << keys << "\n    density: { " << density << " }\n";
+    return loadPipeline(path);
+  }
+  std::string folder() const { return scratch_.path(); }
+
+  double freshError(const Pipeline& pipeline, const Choice& choice) const {
+    Asset finer = choice.asset;
+    finer.voxelSize *= 0.5;
+    finer.precision = Precision::single;
+    finer.mostOctaves = kAllOctaves;
+    return depthError(pipeline, finer, choice.asset, kChoiceRays, kOtherRays, folder());
+  }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(ChoiceTest, HoldsOnFreshRays) {
+  for (const char* density : {kSphere, kNoise})
+    for (const char* tolerance : {"10%", "3%"}) {
+      const Pipeline pipeline = recipe(density, std::string("tolerance: ") + tolerance);
+      const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
+      EXPECT_LE(choice.measured, kChoiceShare * choice.asked);
+      EXPECT_LE(freshError(pipeline, choice), choice.asked) << density << ' ' << tolerance;
+    }
+}
+
+TEST_F(ChoiceTest, TakesTheCoarsestVoxelsThatHold) {
+  const Pipeline pipeline = recipe(kNoise, "tolerance: 3%");
+  const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
+  double coarsestFailure = 1e9;
+  for (const ChoiceTrial& trial : choice.trials) {
+    const bool whole = trial.precision == Precision::single && trial.mostOctaves == kAllOctaves;
+    if (whole && trial.error > kChoiceShare * choice.asked && trial.voxelSize > choice.asset.voxelSize)
+      coarsestFailure = std::min(coarsestFailure, trial.voxelSize);
+  }
+  // Three bisections of a factor of two.
+  EXPECT_LE(coarsestFailure / choice.asset.voxelSize, std::pow(2.0, 1.0 / 8.0) + 1e-6);
+  EXPECT_EQ(choice.asset.precision, Precision::half);
+}
+
+TEST_F(ChoiceTest, LeavesOutOctavesThatDoNotMatter) {
+  const Pipeline pipeline = recipe(kNoise, "tolerance: 10%");
+  const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
+  EXPECT_LT(choice.asset.mostOctaves, 6);
+  EXPECT_NE(choiceAsText(choice).find("octaves beyond"), std::string::npos) << choiceAsText(choice);
+}
+
+TEST_F(ChoiceTest, ALooserToleranceIsNeverDearer) {
+  double last = 0.0;
+  for (const char* tolerance : {"1%", "3%", "10%"}) {
+    const Pipeline pipeline = recipe(kSphere, std::string("tolerance: ") + tolerance);
+    const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
+    EXPECT_GE(choice.asset.voxelSize, last) << tolerance;
+    last = choice.asset.voxelSize;
+  }
+}
+
+TEST_F(ChoiceTest, IsTheSameOnAnyNumberOfThreads) {
+  const Pipeline pipeline = recipe(kNoise, "tolerance: 10%");
+  const Choice many = chooseFor(pipeline, pipeline.assets[0], folder());
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Choice alone = chooseFor(pipeline, pipeline.assets[0], folder());
+  EXPECT_EQ(many.asset.voxelSize, alone.asset.voxelSize);
+  EXPECT_EQ(many.measured, alone.measured);
+  EXPECT_EQ(many.trials.size(), alone.trials.size());
+}
+
+TEST_F(ChoiceTest, ASequenceHasOneVoxelSize) {
+  const Pipeline pipeline = recipe("sphere: { radius: 1, falloff: 0.6 }", "tolerance: 10%\n    frames: 1-5");
+  const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
+  ASSERT_EQ(choice.frames.size(), 3u);
+  EXPECT_EQ(choice.frames[1], 3);
+  BakeOptions options;
+  options.outFolder = folder();
+  options.quiet = true;
+  options.frames = FrameRange{4, 5};
+  for (const BakeRecord& record : bakeAll(pipeline, options)) {
+    ASSERT_TRUE(record.choice);
+    EXPECT_EQ(record.choice->asset.voxelSize, choice.asset.voxelSize);
+  }
+}
+
+TEST_F(ChoiceTest, StandsInTheFileWhichIsThenUpToDate) {
+  const Pipeline pipeline = recipe(kSphere, "tolerance: 10%");
+  BakeOptions options;
+  options.outFolder = folder();
+  options.quiet = true;
+  const std::vector<BakeRecord> records = bakeAll(pipeline, options);
+  const VdbHeader header = readVdbHeader(records[0].file);
+  EXPECT_EQ(header.metadata.at("tolerance"), choiceAsText(*records[0].choice));
+  EXPECT_NE(reportAsJson(records).find("\"measured\""), std::string::npos);
+  EXPECT_TRUE(bakeAll(pipeline, options)[0].skipped);
+  EXPECT_FALSE(bakeAll(recipe(kSphere, "tolerance: 9%"), options)[0].skipped);
+}
+
+TEST_F(ChoiceTest, RefusesWhatNeverEnds) {
+  const Pipeline pipeline = recipe("constant: { value: 1 }", "tolerance: 10%");
+  try {
+    chooseFor(pipeline, pipeline.assets[0], folder());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(error.diagnostics()[0].sentence.find("ends somewhere"), std::string::npos);
+  }
+}
+
+TEST_F(ChoiceTest, AChartHasErrorsThatGrowWithTheVoxels) {
+  const Pipeline pipeline = recipe(kNoise, "voxel_size: 0.05");
+  const CostChart chart = measureCosts(pipeline, pipeline.assets[0], folder(), true);
+  ASSERT_GE(chart.points.size(), 10u);
+  EXPECT_EQ(chart.referenceSize, 0.025);
+  const CostPoint& finest = chart.points[0];
+  const CostPoint& coarsest = chart.points[4];
+  ASSERT_EQ(coarsest.sweep, "voxel size");
+  EXPECT_GT(coarsest.depthRms, 2.0 * finest.depthRms);
+  EXPECT_LT(coarsest.voxelsActive, finest.voxelsActive / 32);
+  EXPECT_LT(coarsest.fileBytes, finest.fileBytes);
+  EXPECT_FALSE(chart.front.empty());
+  writeCostChart(folder(), chart);
+  for (const char* name : {"chart.csv", "index.html"})
+    EXPECT_GT(std::filesystem::file_size(scratch_.file(name)), 500u) << name;
+}
+
+}  // namespace
+}  // namespace nephele::test
