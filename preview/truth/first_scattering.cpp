@@ -4,8 +4,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "preview/truth/channels.h"
-#include "preview/truth/looks.h"
+#include "preview/truth/along_ray.h"
 #include "preview/truth/walk_cells.h"
 
 namespace nephele::truth {
@@ -27,13 +26,7 @@ template <class Value>
 class EventList {
  public:
   EventList(const TrackedMedium& medium, const TrackedRay& ray, Random& random, uint64_t& looks)
-      : medium_(medium),
-        ray_(ray),
-        random_(random),
-        looks_(looks),
-        sigma_(extinction<Value>(medium)),
-        clock_(random),
-        events_(storage()) {
+      : along_(medium, ray, random, looks), events_(storage()) {
     events_.clear();
     walkCells(medium.grid, ray,
               [&](const ControlCell& cell, float t0, float t1) { return cross(cell, t0, t1); });
@@ -72,47 +65,39 @@ class EventList {
 
   /// Scattering by the control over [t0, t1].
   void addPiece(const ControlCell& cell, float t0, float t1) {
-    const Value depth = (cell.control * (t1 - t0)) * sigma_;
+    const Value depth = (cell.control * (t1 - t0)) * along_.sigma;
     add(meanOf(transmittance_ * absorbed(depth)), t0, t1, cell);
     transmittance_ *= exponential(-depth);
   }
 
   bool cross(const ControlCell& cell, float t0, float t1) {
-    const auto excessAt = [&](float t) {
-      ++looks_;
-      return (densityIn(medium_, cell, ray_.origin + t * ray_.direction) - cell.control) / cell.residual;
-    };
     if (cell.smooth) {  // scatters by the control; looks correct what comes through
       addPiece(cell, t0, t1);
-      clock_.cross(cell.residual, t0, t1, random_,
-                   [&](float t) { transmittance_ *= notNegative(Value(1.0f) - excessAt(t) * sigma_); });
+      along_.clock.cross(cell.residual, t0, t1, along_.random, [&](float t) {
+        transmittance_ *= notNegative(Value(1.0f) - along_.excessAt(cell, t) * along_.sigma);
+      });
     } else {  // looks are collisions with what exceeds the minimum
-      clock_.cross(cell.residual, t0, t1, random_, [&](float t) {
+      along_.clock.cross(cell.residual, t0, t1, along_.random, [&](float t) {
         addPiece(cell, t0, t);
-        const Value collides = std::max(excessAt(t), 0.0f) * sigma_;
+        const Value collides = std::max(along_.excessAt(cell, t), 0.0f) * along_.sigma;
         add(meanOf(transmittance_ * collides), t, t, cell);
         transmittance_ *= notNegative(Value(1.0f) - collides);
         t0 = t;
       });
       addPiece(cell, t0, t1);
     }
-    const float counts = roulette(largest(transmittance_), random_);
+    const float counts = roulette(largest(transmittance_), along_.random);
     transmittance_ *= counts;
     return counts > 0.0f;
-  }
-
-  float densityAtT(const ControlCell& cell, float t) {
-    ++looks_;
-    return densityIn(medium_, cell, ray_.origin + t * ray_.direction);
   }
 
   /// True transmittance over the control's from t0 to t in a smooth cell.
   Value correction(const Event<Value>& event, float t) {
     const ControlCell& cell = *event.cell;
     Value factor(1.0f);
-    LookClock clock(random_);
-    clock.cross(cell.residual, event.t0, t, random_, [&](float at) {
-      factor *= notNegative(Value(1.0f) - (densityAtT(cell, at) - cell.control) / cell.residual * sigma_);
+    LookClock clock(along_.random);
+    clock.cross(cell.residual, event.t0, t, along_.random, [&](float at) {
+      factor *= notNegative(Value(1.0f) - along_.excessAt(cell, at) * along_.sigma);
     });
     return factor;
   }
@@ -124,8 +109,8 @@ class EventList {
     constexpr int kPlaces = 4;
     float places[kPlaces], densities[kPlaces], sum = 0.0f;
     for (int i = 0; i < kPlaces; ++i) {
-      places[i] = drawWithin(event, (static_cast<float>(i) + random_.uniform()) / kPlaces, channel);
-      densities[i] = densityAtT(*event.cell, event.t0 + places[i]);
+      places[i] = drawWithin(event, (static_cast<float>(i) + along_.random.uniform()) / kPlaces, channel);
+      densities[i] = along_.densityAt(*event.cell, event.t0 + places[i]);
       sum += densities[i];
     }
     float rest = within * sum;  // in order of distance, so that even numbers stay even
@@ -139,15 +124,17 @@ class EventList {
   float drawWithin(const Event<Value>& event, float within, float channel) const {
     const float rate = event.cell->control, length = event.t1 - event.t0;
     if constexpr (std::is_same_v<Value, float>) {
-      return std::min(-std::log1p(-within * absorbed(rate * length * sigma_)) / (rate * sigma_), length);
+      return std::min(-std::log1p(-within * absorbed(rate * length * along_.sigma)) / (rate * along_.sigma),
+                      length);
     } else {
-      const vec3 shares = event.transmittance * absorbed(rate * length * sigma_);
+      const vec3 shares = event.transmittance * absorbed(rate * length * along_.sigma);
       float rest = channel * (shares.x + shares.y + shares.z);
       int c = 0;
       while (c < 2 && rest >= shares[c]) rest -= shares[c++];
       while (!(shares[c] > 0.0f)) --c;  // rounding may step beyond the last channel that scatters
-      return std::min(-std::log1p(-within * absorbed(rate * length * sigma_[c])) / (rate * sigma_[c]),
-                      length);
+      return std::min(
+          -std::log1p(-within * absorbed(rate * length * along_.sigma[c])) / (rate * along_.sigma[c]),
+          length);
     }
   }
 
@@ -159,24 +146,20 @@ class EventList {
     else if (isPiece)
       apart = drawWithin(event, within, channel);
     first.distance = event.t0 + apart;
-    first.position = ray_.origin + first.distance * ray_.direction;
+    first.position = along_.ray.origin + first.distance * along_.ray.direction;
     // Of the light that collides here, per channel, over the density with which the place was drawn.
-    Value arrives = event.transmittance * sigma_;
-    if (isPiece) arrives *= exponential((-event.cell->control * apart) * sigma_);
+    Value arrives = event.transmittance * along_.sigma;
+    if (isPiece) arrives *= exponential((-event.cell->control * apart) * along_.sigma);
     const Value drawn = arrives * (density * mass_ / meanOf(arrives));
     vec3 collides(smooth ? drawn * correction(event, first.distance) : drawn);
     first.taken = meanOf(collides);
     for (int c = 0; c < 3; ++c)
-      collides[c] *= medium_.sigmaT[c] > 0.0f ? medium_.sigmaS[c] / medium_.sigmaT[c] : 0.0f;
+      collides[c] *=
+          along_.medium.sigmaT[c] > 0.0f ? along_.medium.sigmaS[c] / along_.medium.sigmaT[c] : 0.0f;
     first.weight = collides;
   }
 
-  const TrackedMedium& medium_;
-  const TrackedRay& ray_;
-  Random& random_;
-  uint64_t& looks_;
-  Value sigma_;
-  LookClock clock_;
+  AlongRay<Value> along_;
   std::vector<Event<Value>>& events_;
   Value transmittance_{1.0f};
   float mass_ = 0.0f;

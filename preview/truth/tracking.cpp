@@ -7,8 +7,7 @@
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
-#include "preview/truth/channels.h"
-#include "preview/truth/looks.h"
+#include "preview/truth/along_ray.h"
 #include "preview/truth/walk_cells.h"
 
 namespace nephele::truth {
@@ -21,38 +20,26 @@ template <class Value>
 class Residual {
  public:
   Residual(const TrackedMedium& medium, const TrackedRay& ray, Random& random, uint64_t& looks)
-      : medium_(medium),
-        ray_(ray),
-        random_(random),
-        looks_(looks),
-        sigma_(extinction<Value>(medium)),
-        clock_(random) {}
+      : along_(medium, ray, random, looks) {}
 
   /// Crosses [t0, t1] of a cell. False where Russian roulette ends the ray.
   bool cross(const ControlCell& cell, float t0, float t1) {
     column_ += cell.control * (t1 - t0);
-    clock_.cross(cell.residual, t0, t1, random_, [&](float t) {
-      const float excess = densityIn(medium_, cell, ray_.origin + t * ray_.direction) - cell.control;
-      ++looks_;
-      factor_ *= notNegative(Value(1.0f) - (excess / cell.residual) * sigma_);
+    along_.clock.cross(cell.residual, t0, t1, along_.random, [&](float t) {
+      factor_ *= notNegative(Value(1.0f) - along_.excessAt(cell, t) * along_.sigma);
     });
-    const float depth = smallest(sigma_) * column_;
+    const float depth = smallest(along_.sigma) * column_;
     if (depth < looked_ && largest(factor_) > kSmall) return true;
     looked_ = depth + 1.0f;
-    const float counts = roulette(largest(transmittance()), random_);
+    const float counts = roulette(largest(transmittance()), along_.random);
     factor_ *= counts;
     return counts > 0.0f;
   }
 
-  Value transmittance() const { return factor_ * exponential(-column_ * sigma_); }
+  Value transmittance() const { return factor_ * exponential(-column_ * along_.sigma); }
 
  private:
-  const TrackedMedium& medium_;
-  const TrackedRay& ray_;
-  Random& random_;
-  uint64_t& looks_;
-  Value sigma_;
-  LookClock clock_;
+  AlongRay<Value> along_;
   // Neither the control nor the looks alone let through so little before a ray is worth weighing.
   static constexpr float kSmall = 0.05f, kFirstDepth = 3.0f;
   float looked_ = kFirstDepth;  // the depth from which on it is weighed again
