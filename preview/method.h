@@ -38,6 +38,7 @@ struct PictureRequest {
   // The rest is for methods that know truth (`reference`).
   std::optional<int> bounces{};  // scatterings after the first; none: all
   double error = 0.0;            // above 0: samples until the picture's noise is at most this relative RMSE
+  unsigned mostSamples = 0;      // towards that error, a pixel; 0: without bound
 };
 
 /// Pixels that a stride leaves of `length`.

@@ -125,6 +125,7 @@ Octaves readOctaves(const yaml::Node& node, Diagnostics& out) {
   if (count && !(count->kind == yaml::Kind::scalar && count->scalar == "auto"))
     if (const auto read = yaml::readInteger(*count, "'count'", kOctaveCount, out))
       octaves.count = static_cast<int>(*read);
+  octaves.factorsGiven = reader.find("a") || reader.find("b") || reader.find("c");
   octaves.a = reader.number("a", octaves.a, kUnit);
   octaves.b = reader.number("b", octaves.b, kUnit);
   octaves.c = reader.number("c", octaves.c, kUnit);
@@ -275,6 +276,7 @@ MarchSettings readMarch(const yaml::Node& node, Diagnostics& out) {
   march.cacheVoxels = reader.number("cache", march.cacheVoxels, kCacheVoxels);
   march.skyCacheVoxels = reader.number("sky_cache", march.skyCacheVoxels, kCacheVoxels);
   march.cacheNearVoxels = reader.number("cache_near", march.cacheNearVoxels, kNear);
+  march.cacheDepth = reader.number("cache_depth", march.cacheDepth, {0.0, 1e30, false, false});
   march.giveUp = reader.number("give_up", march.giveUp, {0.0, 0.1, true, false});
   march.cacheNearSteps = static_cast<int>(reader.integer("cache_near_steps", march.cacheNearSteps, kNear));
   march.checkSkips = reader.boolean("check_skips", march.checkSkips);

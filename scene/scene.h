@@ -66,6 +66,7 @@ enum class LightTransmittance { marched, chord };
 struct Octaves {
   std::optional<int> count;  // nullopt (`auto` in files): as the look decides
   double a = 0.5, b = 0.5, c = 0.5;
+  bool factorsGiven = false;  // else a file's fitted ones are taken, where it holds some (preview/resolve.h)
   bool operator==(const Octaves&) const = default;
 };
 
@@ -159,6 +160,8 @@ struct MarchSettings {
   double skyCacheVoxels = 5.34;   // the same for what the sky scatters
   double cacheNearVoxels = 8.0;   // marched towards a light before the volume is asked, from 0 to 16
   int cacheNearSteps = 4;         // in so many steps, from 0 to 16
+  double cacheDepth = 0.2;        // optical depth of a voxel of mean density above which suns and points are
+                                  // marched for all the same, since the volume is then too coarse; >= 0
   double giveUp = 1e-4;           // transmittance below which a ray ends, in (0, 0.1]
   bool checkSkips = false;        // reads what was skipped as well, and counts what that would have changed
   AtlasPrecision precision = AtlasPrecision::automatic;

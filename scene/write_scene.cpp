@@ -73,6 +73,14 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
+/// Nothing where a file's fitted factors may stand in for them.
+std::string factorsOf(const Octaves& octaves) {
+  const Octaves defaults;
+  if (!octaves.factorsGiven && octaves.a == defaults.a && octaves.b == defaults.b && octaves.c == defaults.c)
+    return {};
+  return ", a: " + shortest(octaves.a) + ", b: " + shortest(octaves.b) + ", c: " + shortest(octaves.c);
+}
+
 std::string termsOf(const Scene& scene) {
   const SilverLining& silver = scene.silverLining;
   const Emission& emission = scene.emission;
@@ -83,9 +91,7 @@ std::string termsOf(const Scene& scene) {
          ", o_sa: " + shortest(scene.powder.oSa) +
          " }\nlight_transmittance: " + nameOf(scene.lightTransmittance) +
          "\n# Orders of scattering beyond the first, and their factors.\noctaves: { count: " +
-         (scene.octaves.count ? std::to_string(*scene.octaves.count) : "auto") +
-         ", a: " + shortest(scene.octaves.a) + ", b: " + shortest(scene.octaves.b) +
-         ", c: " + shortest(scene.octaves.c) +
+         (scene.octaves.count ? std::to_string(*scene.octaves.count) : "auto") + factorsOf(scene.octaves) +
          " }\n# temperature_scale: kelvin per unit of the grid.\nemission: { on: " + textOf(emission.on) +
          ", scale: " + shortest(emission.scale) +
          ", temperature_scale: " + shortest(emission.temperatureScale) + ", grid: " + quoted(emission.grid) +
@@ -143,7 +149,7 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
       "where the medium "
       "is\n# thin. light_cache: light from samples `cache` and `sky_cache` voxels apart, after cache_near "
       "voxels marched in "
-      "so many steps.\nmarch: { step: " +
+      "so many steps,\n# where a voxel of mean density is at most cache_depth thick.\nmarch: { step: " +
       shortest(scene.march.stepVoxels) + ", shadow_step: " + shortest(scene.march.shadowStepVoxels) +
       ", shadow_growth: " + shortest(scene.march.shadowGrowth) +
       ", adaptive: " + (scene.march.adaptive ? "true" : "false") +
@@ -151,6 +157,7 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
       ", cache: " + shortest(scene.march.cacheVoxels) +
       ", sky_cache: " + shortest(scene.march.skyCacheVoxels) +
       ", cache_near: " + shortest(scene.march.cacheNearVoxels) +
+      ", cache_depth: " + shortest(scene.march.cacheDepth) +
       ", cache_near_steps: " + std::to_string(scene.march.cacheNearSteps) +
       ", give_up: " + shortest(scene.march.giveUp) +
       ", check_skips: " + (scene.march.checkSkips ? "true" : "false") +

@@ -99,6 +99,11 @@ void setLights(shared::MarchParameters& p, const std::vector<Light>& lights, con
   }
 }
 
+/// Optical depth of a voxel of mean active density.
+double voxelDepth(const BrickVolume& bricks, double sigmaMax) {
+  return sigmaMax * bricks.meanActive * std::cbrt(std::abs(glm::determinant(dmat3(bricks.worldFromIndex))));
+}
+
 /// How steps follow the optical depth, and what the light cache holds.
 void setWalk(shared::MarchParameters& p, const MarchSettings& march, const BrickVolume& bricks,
              const IndexFrame& frame) {
@@ -119,8 +124,10 @@ void setWalk(shared::MarchParameters& p, const MarchSettings& march, const Brick
   // Between samples the cache mixes e^(−κ column). With κ below σ_t places just inside a cloud come out too
   // dark, at σ_t too bright; in between they are right on the mean.
   constexpr float kMixedBy = 0.8f;
-  p.cache = vec4(1.0f, kMixedBy * std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z)),
-                 static_cast<float>(march.cacheNearVoxels), static_cast<float>(march.cacheNearSteps));
+  const float sigmaMax = std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z));
+  if (voxelDepth(bricks, double{sigmaMax}) <= march.cacheDepth)
+    p.cache = vec4(1.0f, kMixedBy * sigmaMax, static_cast<float>(march.cacheNearVoxels),
+                   static_cast<float>(march.cacheNearSteps));
   constexpr float kGrowth = 1.2f, kSkyGrowth = 1.5f;
   p.cacheSteps = vec4(static_cast<float>(0.5 * march.cacheVoxels), kGrowth,
                       static_cast<float>(0.5 * march.skyCacheVoxels), kSkyGrowth);

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 namespace nephele {
@@ -37,7 +38,7 @@ bool sameShape(const MarchParameters& a, const MarchParameters& b) {
 bool sameColumns(const MarchParameters& a, const MarchParameters& b, size_t light) {
   return same(a.lights[light].direction, b.lights[light].direction) &&
          same(a.lights[light].directionIndex, b.lights[light].directionIndex) &&
-         same(a.cacheSteps, b.cacheSteps) && same(a.cache.y, b.cache.y);
+         same(a.cacheSteps, b.cacheSteps) && same(a.cache.x, b.cache.x) && same(a.cache.y, b.cache.y);
 }
 
 /// Everything but the camera, the lights, the view's steps and the seed.
@@ -107,7 +108,8 @@ void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameter
   };
   constexpr uint64_t kChannels = 4;
   constexpr int kSkyHalves = 2, kUnused = 2;  // samples along the edge of what is bound and never read
-  const bool columns = parameters.cache.x > 0.0f && parameters.counts.x > 0;
+  // Also where they are not asked for now: between moving and resting pictures the shape then stays.
+  const bool columns = parameters.cacheShape.x > 0 && parameters.counts.x > 0;
   columns_ = make(columns ? parameters.cacheShape.x : kUnused, columns ? parameters.counts.x : 1,
                   floats_ ? GL_R32F : GL_R16F, channelBytes);
   const bool sky = parameters.cacheShape.y > 0;
@@ -152,6 +154,15 @@ void LightCache::fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) {
   task.nextBlock = (task.nextBlock + blocks) % blockTotal_;
 }
 
+MarchParameters LightCache::knownAfter(const MarchParameters& parameters) const {
+  MarchParameters known = parameters;
+  if (parameters.cache.x > 0.0f || !known_) return known;
+  // Columns that are not asked for stay what they were.
+  std::copy(std::begin(known_->lights), std::end(known_->lights), std::begin(known.lights));
+  known.cache = known_->cache;
+  return known;
+}
+
 bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& parameters, double seconds) {
   const bool otherVolume = atlasSerial_ != atlas.serial();
   if (otherVolume || !known_ || !sameShape(*known_, parameters)) {
@@ -163,7 +174,7 @@ bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& paramete
   }
   findTasks(parameters);
   if (blockTotal_ == 0) tasks_.clear();
-  known_ = parameters;
+  known_ = knownAfter(parameters);
   const auto start = Clock::now();
   while (!tasks_.empty()) {
     Task& task = tasks_.front();

@@ -53,6 +53,7 @@ class LightCache {
   };
 
   void shape(const BrickAtlas& atlas, const shared::MarchParameters& parameters);
+  shared::MarchParameters knownAfter(const shared::MarchParameters& parameters) const;
   void findTasks(const shared::MarchParameters& parameters);
   void fill(const BrickAtlas& atlas, Task& task, uint32_t blocks);
 

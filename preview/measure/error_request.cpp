@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "base/error.h"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr const char *kMarch = "march", *kTruth = "reference";
 constexpr unsigned kMostSamples = 64;
+// Points in the medium have a noise that no number of samples takes away.
+constexpr unsigned kMostTruthSamples = 2048;
 // Apart from the seeds of the settings that are measured, and from each other.
 constexpr unsigned kChoosingSeed = 0x43686f6fu, kMeasuringSeed = 0x4d656173u;
 
@@ -84,6 +87,7 @@ std::vector<Setting> marchCandidates(const Scene& scene) {
     setting.march.stepVoxels = step;
     setting.march.adaptive = true;
     setting.march.lightCache = cache;
+    setting.march.cacheDepth = std::numeric_limits<double>::max();
     (cache ? setting.march.cacheVoxels : setting.march.shadowStepVoxels) = cell;
     if (!cache) setting.march.shadowGrowth = growth;
     settings.push_back(setting);
@@ -109,6 +113,7 @@ ErrorSearch::ErrorSearch(Method& march, Method& truth, const ViewedScene& view, 
   const double share = pixelsOf(whole, 1) / pixelsOf(whole, sparse_.stride);
   PictureRequest request = sparse_;
   request.error = truthNoise_;
+  request.mostSamples = kMostTruthSamples;
   request.seed = whole.seed ^ kChoosingSeed;
   PictureCost cost;
   sparseTruth_ = truth_.render(view, request, cost);
@@ -192,6 +197,7 @@ ErrorPick ErrorSearch::pick(double error) {
 NoisyError ErrorSearch::measure(const Picture& picture) {
   PictureRequest request = sparse_;
   request.error = truthNoise_;
+  request.mostSamples = kMostTruthSamples;
   request.seed = sparse_.seed ^ kMeasuringSeed;
   PictureCost cost;
   return compareWithHalves(everyStride(picture, sparse_.stride), truth_.render(view_, request, cost));

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -153,6 +154,7 @@ std::vector<Setting> settingsFor(const std::vector<std::string>& methods, const 
       for (const unsigned samples : {1u, 4u, 16u}) {
         setting.march.stepVoxels = step;
         setting.march.lightCache = true;
+        setting.march.cacheDepth = std::numeric_limits<double>::max();
         add(samples);
         setting.march.lightCache = false;
         setting.march.shadowStepVoxels = 2.0 * step;

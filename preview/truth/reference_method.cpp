@@ -148,8 +148,9 @@ unsigned blockSize(unsigned samples) {
   return std::clamp(std::bit_floor(samples / kBlocks), 1u, kLargest);
 }
 
-/// Samples until the picture's noise is at most `error`. Returns how many blocks that took.
-unsigned sampleUntil(Sampling& sampling, double error, unsigned size) {
+/// Samples until the picture's noise is at most `error`, or a pixel has its most samples. Returns how many
+/// blocks that took.
+unsigned sampleUntil(Sampling& sampling, double error, unsigned size, unsigned mostSamples) {
   constexpr unsigned kFirst = 8;    // fewer tell the noise badly
   constexpr double kAtOnce = 2.0;   // grow by at most this factor between two looks at the noise
   constexpr double kMargin = 1.02;  // rather a little too far than once more
@@ -158,7 +159,7 @@ unsigned sampleUntil(Sampling& sampling, double error, unsigned size) {
     sampling.add(blocks, until, size);
     blocks = until;
     const double reached = sampling.estimate().relativeError(blocks);
-    if (reached <= error) return blocks;
+    if (reached <= error || (mostSamples > 0 && blocks * size >= mostSamples)) return blocks;
     const double ratio = std::min(kAtOnce, kMargin * reached * reached / (error * error));
     until = blocks + 2 * static_cast<unsigned>(std::ceil(0.5 * (ratio - 1.0) * blocks));
   }
@@ -201,7 +202,7 @@ class ReferenceMethod : public Method {
       Sampling sampling(*bricks_, view, request);
       constexpr unsigned kBlockTowardsError = 16;
       if (request.error > 0.0) {
-        blocks = sampleUntil(sampling, request.error, kBlockTowardsError);
+        blocks = sampleUntil(sampling, request.error, kBlockTowardsError, request.mostSamples);
       } else {
         const unsigned size = blockSize(request.samples);
         blocks = (request.samples + size - 1) / size;

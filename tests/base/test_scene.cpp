@@ -144,7 +144,7 @@ TEST(Scene, WrittenAndReadIsTheSame) {
         "false, precision: r8, level_pixels: 0.5, check_skips: true, light_cache: false, cache: 3.5, "
         "sky_cache: 8, cache_near: "
         "2, "
-        "cache_near_steps: 1, give_up: 0.01 }\n"}) {
+        "cache_near_steps: 1, give_up: 0.01, cache_depth: 0.7 }\n"}) {
     const Scene scene = sceneOf(text);
     const std::string written = writeScene(scene);
     EXPECT_TRUE(sceneOf(written) == scene) << text << "\nwas written as\n" << written;

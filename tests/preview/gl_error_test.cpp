@@ -95,5 +95,22 @@ TEST(GlError, KeepsItsWordAgainstTruthOfItsOwn) {
   }
 }
 
+TEST(GlError, TheMarchAtItsDefaultsIsWithinTwoPercentOfSingleScattering) {
+  Lit lit;
+  constexpr double kThin = 1.0, kDense = 6.0;  // dense: more than half an optical depth a voxel in its middle
+  for (const double times : {kThin, kDense}) {
+    ViewedScene view = lit.view;
+    for (double& sigma : view.medium.sigmaS) sigma *= times;
+    PictureRequest request = Lit::request(64, 48, 256);  // twice as many move the figure by less than a tenth
+    PictureCost cost;
+    const Picture marched = lit.march->render(view, request, cost);
+    request.error = 0.04;
+    request.seed = 5;
+    const NoisyError error = compareWithHalves(marched, lit.truth->render(view, request, cost));
+    std::printf("density x %g: %.3g (%.3g to %.3g)\n", times, error.relativeRmse, error.low, error.high);
+    EXPECT_LE(error.relativeRmse, 0.02) << times;
+  }
+}
+
 }  // namespace
 }  // namespace nephele
