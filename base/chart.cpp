@@ -22,16 +22,6 @@ std::string csvCell(const std::string& text) {
   return quoted + '"';
 }
 
-/// In gnuplot's single quotes only the quote itself is special.
-std::string gnuplotText(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) {
-    if (c == '\'') quoted += '\'';
-    quoted += c == '\n' ? ' ' : c;
-  }
-  return quoted + "'";
-}
-
 void addPanel(std::ostream& out, const ChartPanel& panel) {
   for (size_t i = 0; i < panel.series.size(); ++i) {
     out << "$data" << i << " << EOD\n";
@@ -64,6 +54,16 @@ int runGnuplot(const std::string& script) {
 }
 
 }  // namespace
+
+// In gnuplot's single quotes only the quote itself is special.
+std::string gnuplotText(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') quoted += '\'';
+    quoted += c == '\n' ? ' ' : c;
+  }
+  return quoted + "'";
+}
 
 std::string csvText(const Table& table) {
   std::ostringstream out;
@@ -104,6 +104,12 @@ std::string gnuplotScript(const std::vector<ChartPanel>& panels, const std::stri
 
 std::string drawChart(const std::vector<ChartPanel>& panels, const std::string& folder,
                       const std::string& stem) {
+  return drawByGnuplot(folder, stem, [&](const std::string& terminal, const std::string& output) {
+    return gnuplotScript(panels, terminal, output);
+  });
+}
+
+std::string drawByGnuplot(const std::string& folder, const std::string& stem, const GnuplotScript& scriptOf) {
   const std::pair<const char*, const char*> kinds[] = {{"svg", ".svg"}, {"pngcairo", ".png"}};
   for (const auto& [terminal, ending] : kinds) {
     const std::string path = folder + "/" + stem + ending;
@@ -111,7 +117,7 @@ std::string drawChart(const std::vector<ChartPanel>& panels, const std::string& 
     // Named anew: clang 14 captures no structured binding.
     writeWhole(path, [&, kind = terminal](const std::string& temporary) {
       std::ofstream(temporary, std::ios::binary);  // stays empty where gnuplot fails
-      status = runGnuplot(gnuplotScript(panels, kind, temporary));
+      status = runGnuplot(scriptOf(kind, temporary));
     });
     if (status != 0) {
       std::remove(path.c_str());

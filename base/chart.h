@@ -2,6 +2,7 @@
 // Depends on base alone.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,15 @@ struct ChartPanel {
 /// The gnuplot script that draws the panels side by side into `output` with a terminal ("svg" or "pngcairo").
 std::string gnuplotScript(const std::vector<ChartPanel>& panels, const std::string& terminal,
                           const std::string& output);
+
+/// The script that draws one picture into `output` with a terminal ("svg" or "pngcairo").
+using GnuplotScript = std::function<std::string(const std::string& terminal, const std::string& output)>;
+
+/// Draws FOLDER/STEM.svg and FOLDER/STEM.png by a script. Returns as drawChart does.
+std::string drawByGnuplot(const std::string& folder, const std::string& stem, const GnuplotScript& scriptOf);
+
+/// A text as gnuplot's single-quoted string, with no line break in it.
+std::string gnuplotText(const std::string& text);
 
 /// Draws the panels as FOLDER/STEM.svg and FOLDER/STEM.png. Returns an empty text, or one sentence on why
 /// there is no chart: gnuplot is missing or failed.

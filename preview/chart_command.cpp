@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "preview/measure/chart_page.h"
+#include "preview/measure/stability_page.h"
 #include "preview/method.h"
 #include "preview/render_command.h"
 #include "preview/resolve.h"
@@ -30,31 +31,59 @@ Scene physicalScene(const std::string& path) {
   return scene;
 }
 
+bool isWanted(const std::vector<std::string>& asked, std::string_view name) {
+  return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
+}
+
+/// The built ones of these names (all where there are none), and the reference.
+std::vector<MethodRow> methodsFor(const std::vector<std::string>& asked) {
+  std::vector<MethodRow> rows;
+  for (const MethodRow& row : methods())
+    if (row.make != nullptr && (isWanted(asked, row.name) || row.name == kTruth)) rows.push_back(row);
+  return rows;
+}
+
+/// Makes the folder where it is missing, and sees that files can be written there.
+void openFolder(const std::string& folder, const std::string& file) {
+  if (folder.empty()) throw InputError({}, "chart needs --out FOLDER");
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw WorldError("cannot make the folder '" + folder + "': " + failed.message());
+  removeLeftovers(folder);
+  requireWritable(folder + "/" + file);
+}
+
 }  // namespace
 
+int stabilityCommand(const ChartOptions& options) {
+  for (const std::string& name : options.methods) findMethod(name);
+  openFolder(options.out, "stability.csv");
+  StabilityOptions asked;
+  asked.methods = methodsFor(options.methods);
+  asked.quiet = options.quiet;
+  const StabilityResult result = runStability(asked);
+  const std::string unable = writeStability(options.out, result);
+  if (!unable.empty()) std::cerr << unable << '\n';
+  const std::vector<std::string> bad = badCells(result);
+  for (const std::string& sentence : bad) std::cerr << sentence << '\n';
+  return bad.empty() ? kExitDone : kExitNo;
+}
+
 int chartCommand(const ChartOptions& options) {
-  if (options.out.empty()) throw InputError({}, "chart needs --out FOLDER");
+  if (options.stability) return stabilityCommand(options);
+  if (options.file.empty()) throw InputError({}, "chart needs a FILE.vdb to measure on, or --stability");
   for (const std::string& name : options.methods) findMethod(name);
   const Scene scene = physicalScene(options.scene);
   const BrickVolume bricks = openVolume(options.file, options.grid);
   if (bricks.empty()) throw InputError({options.file}, "an empty grid has nothing to chart");
-  std::error_code failed;
-  std::filesystem::create_directories(options.out, failed);
-  if (failed) throw WorldError("cannot make the folder '" + options.out + "': " + failed.message());
-  removeLeftovers(options.out);
-  requireWritable(options.out + "/chart.csv");
+  openFolder(options.out, "chart.csv");
   std::string sentence;
   const ViewedScene view =
       resolveScene(scene, bricks, static_cast<double>(options.width) / options.height, sentence);
   std::cerr << sentence << '\n';
   SweepOptions sweeping;
-  const std::vector<std::string>& asked = options.methods;
-  const auto wanted = [&](std::string_view name) {
-    return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
-  };
-  for (const MethodRow& row : methods())
-    if (row.make != nullptr && (wanted(row.name) || row.name == kTruth)) sweeping.methods.push_back(row);
-  sweeping.chartsTruth = wanted(kTruth);
+  sweeping.methods = methodsFor(options.methods);
+  sweeping.chartsTruth = isWanted(options.methods, kTruth);
   sweeping.width = options.width;
   sweeping.height = options.height;
   sweeping.seconds = kSecondsPerMinute * options.minutes;

@@ -7,6 +7,7 @@
 #include "base/version.h"
 #include "preview/app/app.h"
 #include "preview/chart_command.h"
+#include "preview/fit_command.h"
 #include "preview/measure/compare.h"
 #include "preview/render_command.h"
 
@@ -41,6 +42,7 @@ struct Arguments {
   std::string size = "960x540", windowSize = "1280x720", frames, error, filter = "hardware", tolerance, vram;
   std::string picture, reference, chartSize = "128x72";
   ChartOptions chart;
+  FitCommandOptions fit;
   double step = 0.0, exposure = 0.0;
   bool json = false;
 };
@@ -79,10 +81,15 @@ void addRenderOptions(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(1u, 1u << 20));
   app.add_option("--step", a.step, "Length of a step, voxels (default: the scene's, 0.5)")
       ->check(CLI::Range(0.01, 100.0));
-  app.add_option("--bounces", a.render.bounces,
-                 "Scatterings after the first, for --method reference (default: all; 0 is single scattering)")
+  app.add_option(
+         "--bounces", a.render.bounces,
+         "Scatterings after the first, for --method reference and --error (default: all, but 0 for --error "
+         "where the scene has no octaves; 0 is single scattering)")
       ->check(CLI::Range(0, 1000000));
-  app.add_option("--error", a.error, "Relative RMSE to reach, as in 1% (--method reference: its own noise)");
+  app.add_option(
+      "--error", a.error,
+      "Relative RMSE to reach against the scene's own truth, as in 1%: picks and measures the cheapest "
+      "settings (--method reference: traces until its noise is that small)");
   app.add_option("--stats", a.render.stats, "Write time, samples and memory to a JSON file");
   app.add_option("--seed", a.render.seed, "Seed of all random numbers")->capture_default_str();
   app.add_option("--exposure", a.exposure,
@@ -100,7 +107,11 @@ void addRenderOptions(CLI::App& app, Arguments& a) {
 }
 
 void addChartOptions(CLI::App& app, Arguments& a) {
-  app.add_option("FILE", a.chart.file, "The .vdb to measure on")->required();
+  app.add_option("FILE", a.chart.file, "The .vdb to measure on (not for --stability)");
+  app.add_flag(
+      "--stability", a.chart.stability,
+      "Map where each method may be trusted: stability.csv, .svg, .png and .md; exit 3 where a picture "
+      "holds what none may");
   app.add_option("--out", a.chart.out, "The folder for chart.csv, chart.svg, chart.png and index.html")
       ->required();
   app.add_option("--scene", a.chart.scene, "A scene, or any YAML file with a top-level scene:");
@@ -116,6 +127,17 @@ void addChartOptions(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0, 1000000));
   app.add_option("--size", a.chartSize, "Size of the pictures that are measured, pixels")
       ->capture_default_str();
+}
+
+void addFitOptions(CLI::App& app, Arguments& a) {
+  app.add_option("FILE", a.fit.files, "The .vdb to fit to; several get one set of factors")->required();
+  app.add_option("--check", a.fit.checks, "Files that are measured and not fitted to");
+  app.add_option("--scene", a.fit.scene, "A scene: its medium, camera and number of octaves are taken");
+  app.add_option("--grid", a.fit.grid, "The grid (default: density, else the first float fog grid)");
+  app.add_option("--out", a.fit.out, "A folder for fit.csv, fit.svg and fit.png");
+  app.add_option("--octaves", a.fit.count, "Octaves beyond the first (default: the scene's, else 6)")
+      ->check(CLI::Range(1, 16));
+  app.add_flag("--dry-run", a.fit.dryRun, "Leave the files as they are");
 }
 
 int renderOrShow(Arguments& a, bool renderGiven, bool stepGiven, bool exposureGiven) {
@@ -156,6 +178,9 @@ int run(int argc, char** argv) {
   compare->add_flag("--json", a.json, "Print JSON");
   CLI::App* chart = app.add_subcommand("chart", "Chart methods against truth: CSV, SVG, PNG and a page");
   addChartOptions(*chart, a);
+  CLI::App* fit = app.add_subcommand(
+      "fit", "Fit the octaves' factors to the reference, and store them in the file's metadata");
+  addFitOptions(*fit, a);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -167,6 +192,7 @@ int run(int argc, char** argv) {
     parseSize("--size", a.chartSize, a.chart.width, a.chart.height);
     return chartCommand(a.chart);
   }
+  if (fit->parsed()) return fitCommand(a.fit);
   if (compare->parsed()) {
     std::optional<double> tolerance;
     if (!a.tolerance.empty()) tolerance = parseTolerance(a.tolerance);

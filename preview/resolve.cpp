@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <glm/matrix.hpp>
 #include <iomanip>
+#include <iterator>
 #include <sstream>
 
 #include "scene/light_model.h"
@@ -148,11 +149,33 @@ void turnLights(Scene& scene, const dvec3& up) {
   scene.lightsFollowUp = false;
 }
 
+bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks) {
+  if (octaves.factorsGiven || !bricks.metadata.contains(kFittedFactors[0])) return false;
+  double* const factors[] = {&octaves.a, &octaves.b, &octaves.c};
+  for (size_t i = 0; i < std::size(factors); ++i) {
+    const auto found = bricks.metadata.find(kFittedFactors[i]);
+    const std::vector<double> numbers =
+        found == bricks.metadata.end() ? std::vector<double>{} : numbersIn(found->second);
+    if (numbers.size() != 1 || !(numbers[0] >= 0.0 && numbers[0] <= 1.0))
+      throw InputError({bricks.path}, std::string("the metadata '") + kFittedFactors[i] +
+                                          "' should be a number from 0 to 1");
+    *factors[i] = numbers[0];
+  }
+  return true;
+}
+
 ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double aspect,
                          std::string& mediumSentence) {
   ChosenMedium chosen = chooseMedium(scene, bricks);
   mediumSentence = std::move(chosen.sentence);
   ViewedScene view{scene, Camera{}, chosen.medium, upOf(bricks), nullptr};
+  const bool scatters = lightModelOf(scene, view.medium).octaveCount > 0;
+  if (scatters && takeFittedFactors(view.scene.octaves, bricks)) {
+    std::ostringstream fitted;
+    fitted << "\noctaves: as fitted to the file: a " << view.scene.octaves.a << ", b " << view.scene.octaves.b
+           << ", c " << view.scene.octaves.c;
+    mediumSentence += fitted.str();
+  }
   if (scene.environment.kind == Environment::Kind::exr)
     view.environmentMap = loadEnvironmentMap(scene.environment.exr.path);
   turnLights(view.scene, view.up);

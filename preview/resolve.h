@@ -39,6 +39,13 @@ glm::dvec3 turnedTo(const glm::dvec3& up, const glm::dvec3& direction);
 /// Turns lights that follow up to where `up` is; they stay so.
 void turnLights(Scene& scene, const glm::dvec3& up);
 
+/// Names of the factors of octaves that `nephele-preview fit` leaves in a file's metadata: a, b, c.
+inline constexpr const char* kFittedFactors[] = {"octaves_a", "octaves_b", "octaves_c"};
+
+/// Octaves whose factors the scene leaves open take those that were fitted to the file, where it holds them.
+/// Returns whether it does. Throws InputError where they are no factors in [0, 1].
+bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks);
+
 /// Camera and medium of a scene, given or chosen; the file's up; the environment's picture, read. A camera
 /// without `up` takes the file's. Lights that follow up are turned, and stay so. Throws InputError for an
 /// environment that cannot be read.

@@ -85,13 +85,18 @@ void initializeOpenVdb() {
 }
 
 uint64_t writeVdb(const std::string& path, const openvdb::GridCPtrVec& grids, const Provenance& provenance) {
+  return writeGrids(path, grids, metadataOf(provenance));
+}
+
+uint64_t writeGrids(const std::string& path, const openvdb::GridCPtrVec& grids,
+                    const openvdb::MetaMap& metadata) {
   initializeOpenVdb();
   writeWhole(path, [&](const std::string& temporary) {
     try {
       std::ofstream file;
       file.exceptions(std::ios::failbit | std::ios::badbit);
       file.open(temporary, std::ios::binary | std::ios::trunc);
-      writeVdbTo(file, grids, metadataOf(provenance));
+      writeVdbTo(file, grids, metadata);
       file.close();
       readVdbHeader(temporary);  // a full disk is not always told otherwise
     } catch (const openvdb::Exception& error) {

@@ -29,6 +29,9 @@ openvdb::Vec3SGrid::Ptr makeVelocityGrid(double voxelSize, bool saveAsHalf);
 /// Writes the grids to `path` with Blosc and the active mask, whole or not at all; `provenance` becomes
 /// metadata of the file. Returns the file's size in bytes. Throws WorldError.
 uint64_t writeVdb(const std::string& path, const openvdb::GridCPtrVec& grids, const Provenance& provenance);
+/// The same with the file's metadata as given.
+uint64_t writeGrids(const std::string& path, const openvdb::GridCPtrVec& grids,
+                    const openvdb::MetaMap& metadata);
 
 /// Everything in a file, after readVdbHeader(). Throws InputError or WorldError. Grids come fully loaded.
 struct VdbContents {

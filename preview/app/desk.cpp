@@ -74,6 +74,11 @@ void Desk::adopt(bool otherFile) {
     scene.camera = firstScene_.camera;
     scene.cameraUpGiven = firstScene_.cameraUpGiven;
     scene.medium = firstScene_.medium;
+    if (!scene.octaves.factorsGiven) {  // they may be another file's
+      const std::optional<int> count = scene.octaves.count;
+      scene.octaves = firstScene_.octaves;
+      scene.octaves.count = count;
+    }
     std::string sentence;
     const ViewedScene view = resolveScene(scene, volume, aspect(), sentence);
     say(sentence);

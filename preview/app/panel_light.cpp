@@ -150,11 +150,12 @@ bool octaveWidgets(Octaves& octaves, const LightModel& model) {
     }
   }
   if (count == 0) return changed;
-  changed |= widgets::slider("a extinction", octaves.a, 0.0, 1.0, "%.2f");
-  changed |= widgets::slider("b scattering", octaves.b, 0.0, 1.0, "%.2f");
-  changed |= widgets::slider("c asymmetry", octaves.c, 0.0, 1.0, "%.2f");
+  bool factors = widgets::slider("a extinction", octaves.a, 0.0, 1.0, "%.2f");
+  factors |= widgets::slider("b scattering", octaves.b, 0.0, 1.0, "%.2f");
+  factors |= widgets::slider("c asymmetry", octaves.c, 0.0, 1.0, "%.2f");
+  octaves.factorsGiven |= factors;
   furnaceText(model);
-  return changed;
+  return changed || factors;
 }
 
 bool emissionWidgets(Emission& emission) {

@@ -13,6 +13,7 @@
 #include "tests/scratch_folder.h"
 #include "tests/volume/test_grids.h"
 #include "volume/info.h"
+#include "volume/metadata.h"
 
 namespace nephele {
 namespace {
@@ -29,6 +30,30 @@ TEST(VdbFile, ContentSurvivesTheDisk) {
   EXPECT_EQ(contentHash(*readBack(scratch.file("a.vdb"))), contentHash(*grid));
   EXPECT_EQ(contentHash(*grid).size(), 32u);
   EXPECT_EQ(scratch.fileCount(), 1);
+}
+
+TEST(VdbFile, NumbersAreAddedToItsMetadataAndAllElseStays) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.file("a.vdb");
+  const auto grid = randomGrid({-100, 3, 8}, 20);
+  const auto velocity = makeVelocityGrid(0.1, true);
+  velocity->fill(openvdb::CoordBBox({0, 0, 0}, {9, 9, 9}), openvdb::Vec3s(1.0f, 2.0f, 0.25f));
+  Provenance provenance;
+  provenance.recipeHash = "abc";
+  writeVdb(path, {grid, velocity}, provenance);
+  auto before = metadataAsText(*readVdb(path).metadata);
+  addMetadata(path, {{"octaves_a", 0.25}, {"octaves_b", 0.5}});
+  addMetadata(path, {{"octaves_a", 0.75}});
+  const VdbContents after = readVdb(path);
+  before["octaves_a"] = "0.75";
+  before["octaves_b"] = "0.5";
+  EXPECT_EQ(metadataAsText(*after.metadata), before);
+  ASSERT_EQ(after.grids->size(), 2u);
+  EXPECT_EQ(contentHash(*after.grids->at(0)), contentHash(*grid));
+  EXPECT_EQ(contentHash(*after.grids->at(1)), contentHash(*velocity));
+  EXPECT_TRUE(after.grids->at(1)->saveFloatAsHalf());
+  EXPECT_EQ(scratch.fileCount(), 1);
+  EXPECT_THROW(addMetadata(scratch.file("nowhere.vdb"), {{"a", 1.0}}), InputError);
 }
 
 /// The file's bytes from its first transform on: all that has neither a random number nor the hints for

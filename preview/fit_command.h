@@ -1,0 +1,24 @@
+// The command `fit`: the octaves' factors of a file, fitted to the reference. Depends on preview, volume,
+// base.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nephele {
+
+struct FitCommandOptions {
+  std::vector<std::string> files;   // that are fitted to, by one set of factors, and get it
+  std::vector<std::string> checks;  // that are measured alone
+  std::string scene, grid, out;     // out: a folder for fit.csv, .svg, .png; empty: none
+  std::optional<int> count;         // octaves; none: the scene's where it asks for some, else 6
+  bool dryRun = false;              // write no metadata
+  bool quiet = false;
+};
+
+/// Fits, prints the factors and errors before and after, and writes octaves_a, octaves_b and octaves_c into
+/// the metadata of each file. Throws InputError or WorldError. Returns the exit code 0.
+int fitCommand(const FitCommandOptions& options);
+
+}  // namespace nephele
