@@ -39,8 +39,8 @@ vec3 velocityOf(const ParticleArrays& p, size_t n) { return {p.vx[n], p.vy[n], p
 void setPlace(ParticleArrays& p, size_t n, const vec3& v) { p.x[n] = v.x, p.y[n] = v.y, p.z[n] = v.z; }
 void setVelocity(ParticleArrays& p, size_t n, const vec3& v) { p.vx[n] = v.x, p.vy[n] = v.y, p.vz[n] = v.z; }
 
-/// How far from the origin particles can be moved: cells of every lattice they meet stay whole numbers of 30
-/// bits.
+}  // namespace
+
 double farthestOf(const ParticleSystem& system) {
   const Forces& f = system.forces;
   double farthest = kMostCells;
@@ -49,8 +49,6 @@ double farthestOf(const ParticleSystem& system) {
   if (f.neighbourReach > 0.0) farthest = std::min(farthest, kMostCells * f.neighbourReach);
   return farthest;
 }
-
-}  // namespace
 
 void ParticleArrays::resize(size_t count) {
   forEachFloats([count](std::vector<float>& array) { array.resize(count); });

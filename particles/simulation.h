@@ -60,6 +60,10 @@ struct SimulationSettings {
   uint32_t seed = 0;
 };
 
+/// How far from the origin, along each axis, particles can be moved: cells of every lattice they meet stay
+/// whole numbers of 30 bits.
+double farthestOf(const ParticleSystem& system);
+
 /// Sums of birth masses so far, in density · world units³.
 struct BirthLedger {
   double emitted = 0.0, died = 0.0;

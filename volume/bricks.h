@@ -33,9 +33,10 @@ struct BrickVolume {
   std::vector<float> samples;      // 729 per slot, x fastest, then y, then z
   std::vector<float> slotMaximum;  // per slot: largest of its 729 samples
   uint64_t activeVoxels = 0;
-  double maximum = 0.0;                         // largest sample
-  double meanActive = 0.0;                      // mean over active voxels
-  char upAxis = 'z';                            // from the file's metadata, z where it says nothing
+  double maximum = 0.0;     // largest sample
+  double bound = 0.0;       // above 0: samples change after reading, and none will ever exceed this
+  double meanActive = 0.0;  // mean over active voxels
+  char upAxis = 'z';        // from the file's metadata, z where it says nothing
   std::map<std::string, std::string> metadata;  // the file's and the grid's, as text
   std::vector<std::string> notes;               // what had to be left out or assumed, as sentences
 

@@ -48,6 +48,14 @@ class BrickAtlas {
   /// Differs from that of every other atlas of this process.
   uint64_t serial() const { return serial_; }
 
+  /// For who writes densities on the GPU: the textures, and the word that what is made from their contents is
+  /// old.
+  GLuint texture() const { return atlas_.name(); }
+  GLuint indexTexture() const { return index_.name(); }
+  void contentsChanged() { ++contents_; }
+  /// Counts those changes.
+  uint64_t contents() const { return contents_; }
+
  private:
   void uploadAtlas();
 
@@ -60,6 +68,7 @@ class BrickAtlas {
   mutable uint64_t storedBytes_ = 0;
   uint64_t gpuBytes_ = 0;
   uint64_t serial_;
+  uint64_t contents_ = 0;
 };
 
 }  // namespace nephele

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 namespace nephele {
 namespace {
@@ -118,8 +119,8 @@ void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameter
   checkGl("making the light cache");
 }
 
-void LightCache::findTasks(const MarchParameters& parameters) {
-  const bool all = !known_ || !sameShape(*known_, parameters);
+void LightCache::findTasks(const MarchParameters& parameters, bool otherContents) {
+  const bool all = otherContents || !known_ || !sameShape(*known_, parameters);
   const auto begin = [&](int light) {
     for (Task& task : tasks_) {
       if (task.light != light) continue;
@@ -172,7 +173,7 @@ bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& paramete
     atlasSerial_ = atlas.serial();
     seconds = std::numeric_limits<double>::infinity();  // it holds nothing that could be shown meanwhile
   }
-  findTasks(parameters);
+  findTasks(parameters, std::exchange(atlasContents_, atlas.contents()) != atlas.contents());
   if (blockTotal_ == 0) tasks_.clear();
   known_ = knownAfter(parameters);
   const auto start = Clock::now();

@@ -54,7 +54,7 @@ class LightCache {
 
   void shape(const BrickAtlas& atlas, const shared::MarchParameters& parameters);
   shared::MarchParameters knownAfter(const shared::MarchParameters& parameters) const;
-  void findTasks(const shared::MarchParameters& parameters);
+  void findTasks(const shared::MarchParameters& parameters, bool otherContents);
   void fill(const BrickAtlas& atlas, Task& task, uint32_t blocks);
 
   const GlProgram& programFor(const shared::MarchParameters& parameters);
@@ -67,7 +67,7 @@ class LightCache {
   GlBuffer blocks_, cost_;
   uint32_t blockTotal_ = 0;
   uint64_t gpuBytes_ = 0;
-  uint64_t atlasSerial_ = 0;
+  uint64_t atlasSerial_ = 0, atlasContents_ = 0;
   std::optional<shared::MarchParameters> known_;
   std::vector<Task> tasks_;
   double blocksPerSecond_ = 0.0;
