@@ -38,6 +38,8 @@ class Viewer {
   /// thrown: InputError or WorldError. Pictures must be restarted.
   void setVolume(std::shared_ptr<const BrickVolume> bricks);
   const BrickVolume& volume() const { return *bricks_; }
+  /// For live particles, which write their densities into it; nullptr before a volume is set.
+  BrickAtlas* atlas() { return atlas_ ? &*atlas_ : nullptr; }
 
   void restart(Side side, const LaneRequest& request);
   /// Forgets the kept side.
