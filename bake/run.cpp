@@ -61,7 +61,11 @@ Provenance provenanceOf(const Pipeline& pipeline, const BakeJob& job, const std:
   provenance.recipeHash = hash;
   provenance.seed = pipeline.seed;
   provenance.frame = job.frame;
-  if (job.asset->particles) provenance.particles = writeParticles(*job.asset->particles);
+  if (job.asset->particles) {
+    provenance.particles = writeParticles(*job.asset->particles);
+    provenance.fps = job.asset->fps;
+    provenance.cutoff = job.asset->cutoff;
+  }
   if (pipeline.scene && pipeline.scene->medium) {
     provenance.hasMedium = true;
     provenance.sigmaS = pipeline.scene->medium->sigmaS;

@@ -25,6 +25,8 @@ openvdb::MetaMap metadataOf(const Provenance& provenance) {
   if (provenance.frame) metadata.insertMeta("frame", openvdb::Int32Metadata(*provenance.frame));
   if (!provenance.particles.empty())
     metadata.insertMeta("particles", openvdb::StringMetadata(provenance.particles));
+  if (provenance.fps) metadata.insertMeta("fps", openvdb::DoubleMetadata(*provenance.fps));
+  if (provenance.cutoff) metadata.insertMeta("cutoff", openvdb::DoubleMetadata(*provenance.cutoff));
   if (!provenance.tolerance.empty())
     metadata.insertMeta("tolerance", openvdb::StringMetadata(provenance.tolerance));
   if (provenance.mass) metadata.insertMeta("mass", openvdb::DoubleMetadata(*provenance.mass));

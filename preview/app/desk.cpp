@@ -90,6 +90,9 @@ void Desk::adopt(bool otherFile) {
     state_.sceneFile = sceneFileFor(options_.folder, volume.path);
     state_.kept.reset();
     viewer_.endSplit();
+    liveSource_ = liveSourceOf(volume);
+    state_.settings.particles.reset();
+    if (liveSource_) state_.settings.particles = liveSource_->system;
     history_ = History<Settings>(kMostUndo);
     firstCamera_ = view.camera;
     orbit_ = OrbitCamera(firstCamera_);
@@ -122,6 +125,7 @@ void Desk::restart() {
   ++restarts_;
   statsKnown_ = false;
   if (width_ < 1 || height_ < 1) return;
+  followLive();
   viewer_.setGoal(state_.goal);
   viewer_.restart(Side::edited, request(state_.settings));
   if (state_.kept) viewer_.restart(Side::kept, request(*state_.kept));
@@ -157,7 +161,7 @@ bool Desk::advance(double seconds) {
   fly(seconds);
   const DocumentNews news = document_.advance(seconds);
   takeNews(news);
-  const bool moving = news.volume != nullptr || window_.flight().any();
+  const bool moving = advanceLive(seconds) || news.volume != nullptr || window_.flight().any();
   const double frame = std::min(seconds, kLongestFrame);
   frameSeconds_ =
       moving ? (frameSeconds_ > 0.0 ? (1.0 - kSmoothing) * frameSeconds_ + kSmoothing * frame : frame)
@@ -172,6 +176,7 @@ bool Desk::advance(double seconds) {
 void Desk::takeNews(const DocumentNews& news) {
   if (!news.notice.empty()) say(news.notice);
   if (!news.volume) return;
+  live_.reset();
   try {
     viewer_.setVolume(news.volume);
   } catch (const std::exception& error) {  // too large for the GPU: the volume before stays
@@ -195,6 +200,7 @@ void Desk::takeNews(const DocumentNews& news) {
 
 std::optional<double> Desk::due() const {
   std::optional<double> due = document_.timeline().due();
+  if (const auto live = live_ ? live_->due() : std::nullopt) due = std::min(due.value_or(*live), *live);
   if (noticeSeconds_ > 0.0) due = std::min(due.value_or(noticeSeconds_), noticeSeconds_);
   return due;
 }
@@ -206,11 +212,21 @@ void Desk::say(const std::string& notice) {
 }
 
 UiFacts Desk::facts() const {
-  UiFacts facts{document_, viewer_.stats(Side::edited), viewer_.gpuBytes(),
-                0.0,       history_.undoSteps(),        history_.redoSteps(),
+  UiFacts facts{document_,
+                viewer_.stats(Side::edited),
+                viewer_.gpuBytes(),
+                0.0,
+                history_.undoSteps(),
+                history_.redoSteps(),
+                {},
                 {}};
   if (frameSeconds_ > 0.0) facts.framesPerSecond = 1.0 / frameSeconds_;
   facts.warnings = document_.volume().notes;
+  if (live_) {
+    facts.live =
+        LiveFacts{live_->playing(), live_->frame(), live_->alive(), leftOutLive(*state_.settings.particles)};
+    facts.gpuBytes += live_->gpuBytes();
+  }
   if (facts.stats.raysCutShort > 0.0)
     facts.warnings.push_back("the driver cut " + std::to_string(std::llround(facts.stats.raysCutShort)) +
                              " rays short and the picture is wrong: take longer steps");

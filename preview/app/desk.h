@@ -8,6 +8,7 @@
 #include "preview/app/bookmarks.h"
 #include "preview/app/document.h"
 #include "preview/app/history.h"
+#include "preview/app/live_session.h"
 #include "preview/app/orbit_camera.h"
 #include "preview/app/ui_state.h"
 #include "preview/app/viewer.h"
@@ -73,6 +74,14 @@ class Desk {
   void swapSides();
   void saveTheScene();
   void picture(const std::string& extension);
+  void actOnParticles(Action action);
+  void beginLive();
+  void endLive();
+  /// Takes parameters and voxels over to live particles and their volume to the viewer. Where they cannot be,
+  /// says so.
+  void followLive();
+  bool advanceLive(double seconds);
+  void bakeThis();
   void change(const Settings& before);
   void restart();
   LaneRequest request(const Settings& settings) const;
@@ -87,6 +96,8 @@ class Desk {
   Document document_;
   Viewer viewer_;
   UiState state_;
+  std::optional<LiveSource> liveSource_;  // of the file
+  std::optional<LiveSession> live_;       // goes before the viewer
   History<Settings> history_;
   Bookmarks bookmarks_;
   Camera firstCamera_;

@@ -134,6 +134,19 @@ void Desk::act(Action action) {
     case Action::help:
       state_.help = !state_.help;
       break;
+    case Action::liveParticles:
+    case Action::resetParticles:
+    case Action::bakeThis:
+      actOnParticles(action);
+      break;
+    case Action::play:
+    case Action::stepBack:
+    case Action::stepOn:
+      if (live_)
+        actOnParticles(action);
+      else
+        actOnFiles(action);
+      break;
     case Action::focus:
     case Action::frameAll:
     case Action::firstView:
@@ -153,7 +166,7 @@ void Desk::actOnCamera(Action action) {
   }
   const Camera now = orbit_.camera();
   orbit_ =
-      OrbitCamera(action == Action::frameAll ? frameCamera(document_.volume(), state_.up, now.fov, aspect())
+      OrbitCamera(action == Action::frameAll ? frameCamera(viewer_.volume(), state_.up, now.fov, aspect())
                                              : firstCamera_);
   restart();
 }

@@ -52,6 +52,7 @@ class Document {
   const std::vector<SequenceFrame>& frames() const { return frames_; }
   const std::vector<GridChoice>& grids() const { return grids_; }
   const BrickVolume& volume() const { return *volume_; }
+  std::shared_ptr<const BrickVolume> sharedVolume() const { return volume_; }
   /// Whether anything is being read that will be shown at once.
   bool waiting() const { return pending_.has_value() || timeline_.waiting(); }
 

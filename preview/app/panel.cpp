@@ -36,7 +36,7 @@ void mainPanel(UiState& state, const UiFacts& facts, UiWishes& wishes) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float width = std::clamp(kShare * screen.x, kNarrowest, kWidest);
   const float below =
-      facts.document.timeline().frames() > 1 ? ImGui::GetFrameHeight() + 4.0f * kMargin : 0.0f;
+      facts.document.timeline().frames() > 1 && !facts.live ? ImGui::GetFrameHeight() + 4.0f * kMargin : 0.0f;
   const float highest = std::max(screen.y - 2.0f * kMargin - below, 2.0f * kMargin);
   ImGui::SetNextWindowPos({kMargin, kMargin});
   ImGui::SetNextWindowCollapsed(screen.x < kSmallScreen, ImGuiCond_Once);
@@ -45,6 +45,7 @@ void mainPanel(UiState& state, const UiFacts& facts, UiWishes& wishes) {
     ImGui::PushItemWidth(-kLabelShare * width);
     fileParts(state, facts, wishes);
     viewParts(state, facts, wishes);
+    liveParts(state, facts, wishes);
     lightParts(state, wishes);
     ImGui::PopItemWidth();
   }

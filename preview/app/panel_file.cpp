@@ -48,7 +48,7 @@ void fileParts(UiState& state, const UiFacts& facts, UiWishes& wishes) {
 
 void timelineStrip(const UiFacts& facts, UiWishes& wishes) {
   const Timeline& timeline = facts.document.timeline();
-  if (timeline.frames() < 2) return;
+  if (timeline.frames() < 2 || facts.live) return;
   constexpr float kMargin = 8.0f, kFpsWidth = 70.0f, kHeightShare = 1.0f;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * screen.x, screen.y - kMargin}, ImGuiCond_Always, {0.5f, kHeightShare});

@@ -10,9 +10,11 @@ namespace nephele {
 void lightParts(UiState& state, UiWishes& wishes);
 /// March, view, split and goal at rest.
 void viewParts(UiState& state, const UiFacts& facts, UiWishes& wishes);
+/// Live particles and all their parameters; nothing where the file carries none.
+void liveParts(UiState& state, const UiFacts& facts, UiWishes& wishes);
 /// File, grid, undo, scene and pictures.
 void fileParts(UiState& state, const UiFacts& facts, UiWishes& wishes);
-/// The strip at the lower edge; nothing where there is no sequence.
+/// The strip at the lower edge; nothing where there is no sequence, or while particles are moved live.
 void timelineStrip(const UiFacts& facts, UiWishes& wishes);
 /// The head-up line, warnings and notice at the upper right; warnings alone where `full` is false.
 void headUpLine(const UiState& state, const UiFacts& facts, bool full);

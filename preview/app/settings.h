@@ -1,8 +1,11 @@
-// What undo covers: everything that makes the light, and how bright it is shown. Depends on scene alone.
+// What undo covers: everything that makes the light, and how bright it is shown. Depends on scene and
+// particles.
 #pragma once
 
 #include <memory>
+#include <optional>
 
+#include "particles/particles.h"
 #include "scene/environment_map.h"
 #include "scene/scene.h"
 
@@ -14,6 +17,7 @@ struct Settings {
   Medium medium;
   std::shared_ptr<const EnvironmentMap> environmentMap;  // the picture of scene.environment.exr.path, if read
   double exposureEv = 0.0;
+  std::optional<ParticleSystem> particles;  // of the file's metadata, as changed since
 };
 
 }  // namespace nephele

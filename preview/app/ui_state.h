@@ -21,11 +21,20 @@ struct UiState {
   Slice slice;
   RestGoal goal;
   double divider = 0.5;  // share of the width
+  int liveEdge = 64;     // voxels along the longest side of live particles' grid
   glm::dvec3 up{0.0, 0.0, 1.0};
   bool visible = true;
   bool help = false;
   std::string notice;     // the last thing done or refused, as a sentence
   std::string sceneFile;  // where the scene is saved to and read from
+};
+
+/// Of particles that are moved live.
+struct LiveFacts {
+  bool playing = false;
+  int64_t frame = 0;  // below 0: before the first frame
+  uint32_t alive = 0;
+  std::vector<std::string> leftOut;  // what the bake does and live particles do not
 };
 
 /// What the panel shows and cannot change.
@@ -35,6 +44,7 @@ struct UiFacts {
   uint64_t gpuBytes = 0;
   double framesPerSecond = 0.0;  // while things move or play; 0 at rest
   size_t undoSteps = 0, redoSteps = 0;
+  std::optional<LiveFacts> live;      // while particles are moved live
   std::vector<std::string> warnings;  // what is wrong with the picture, or worth knowing of the file
 };
 
