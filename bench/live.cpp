@@ -73,7 +73,7 @@ class Bench {
     std::string sentence;
     view_ = resolveScene(scene, *volume, static_cast<double>(options.width) / options.height, sentence);
     std::cerr << describeLight(view_) << '\n';
-    viewer_.setVolume(volume);
+    viewer_.setLiveVolume(volume);
     screen_ = makeTexture(GL_TEXTURE_2D);
     glTextureStorage2D(screen_.name(), 1, GL_RGBA8, options.width, options.height);
     framebuffer_ = makeFramebuffer();
@@ -109,8 +109,8 @@ class Bench {
           film.clear();
           pass.setParameters(
               marchParameters(moving, viewer_.volume(), options_.width, options_.height, 0, true));
-          pass.prepare(*viewer_.atlas(), kMovingCacheSeconds);
-          pass.draw(*viewer_.atlas(), film, {0.5f, 0.5f}, 0, {0, 0, options_.width, options_.height});
+          pass.prepare(*viewer_.liveAtlas(), kMovingCacheSeconds);
+          pass.draw(*viewer_.liveAtlas(), film, {0.5f, 0.5f}, 0, {0, 0, options_.width, options_.height});
         }));
       }));
     std::printf(
@@ -148,7 +148,7 @@ class Bench {
   void step() {
     for (int64_t n = 0; n < motion_.system().substeps; ++n) motion_.step();
   }
-  void motionToGrid() { grid_.rebuild(motion_, box_, mostMass_, *viewer_.atlas()); }
+  void motionToGrid() { grid_.rebuild(motion_, box_, mostMass_, *viewer_.liveAtlas()); }
   void draw() {
     viewer_.restart(Side::edited, {view_, View::radiance, {}, options_.width, options_.height});
     viewer_.work(0.0);

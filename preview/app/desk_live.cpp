@@ -65,8 +65,12 @@ void Desk::beginLive() {
 
 void Desk::endLive() {
   live_.reset();
-  viewer_.setVolume(document_.sharedVolume());
-  say("back to the file");
+  try {
+    viewer_.setVolume(document_.sharedVolume());
+    say("back to the file");
+  } catch (const std::exception& error) {  // too large for the GPU by now: what the particles left stays
+    say(error.what());
+  }
   restart();
 }
 
@@ -80,7 +84,7 @@ void Desk::followLive() {
   }
   if (&viewer_.volume() == live_->volume().get()) return;
   try {
-    viewer_.setVolume(live_->volume());
+    viewer_.setLiveVolume(live_->volume());
   } catch (const std::exception& error) {  // too large for the GPU: the volume before stays
     say(error.what());
     live_.reset();
@@ -90,7 +94,7 @@ void Desk::followLive() {
 
 bool Desk::advanceLive(double seconds) {
   if (!live_ || width_ < 1 || height_ < 1) return false;
-  const bool moved = live_->advance(seconds, *viewer_.atlas());
+  const bool moved = live_->advance(seconds, *viewer_.liveAtlas());
   if (const std::string trouble = live_->takeTrouble(); !trouble.empty()) say(trouble);
   if (moved) restart();
   return moved;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "preview/behind.h"
 #include "preview/gpu/camera_rays.h"
@@ -44,6 +45,7 @@ Viewer::Viewer(Filter filter, unsigned seed, uint64_t vramBytes)
 
 void Viewer::setVolume(std::shared_ptr<const BrickVolume> bricks) {
   seen_.reset();  // two volumes at once may be more than the GPU holds
+  std::optional<BrickAtlas> live = std::exchange(live_, std::nullopt);
   std::swap(bricks_, bricks);
   try {
     seen_.emplace(*bricks_, filter_, limits_);
@@ -51,9 +53,18 @@ void Viewer::setVolume(std::shared_ptr<const BrickVolume> bricks) {
   } catch (const std::exception&) {
     std::swap(bricks_, bricks);
     seen_.reset();
+    if (live) live_.emplace(std::move(*live));
     if (bricks_) seen_.emplace(*bricks_, filter_, limits_);
     throw;
   }
+}
+
+void Viewer::setLiveVolume(std::shared_ptr<const BrickVolume> bricks) {
+  BrickAtlas atlas(*bricks, filter_, Texel::r32f);
+  seen_.reset();
+  live_.reset();
+  live_.emplace(std::move(atlas));
+  bricks_ = std::move(bricks);
 }
 
 void Viewer::endSplit() {
@@ -71,7 +82,7 @@ MarchPass& Viewer::passFor(View view) {
 LaneTools Viewer::toolsFor(const Lane& lane, bool moving) {
   const LaneRequest& r = lane.request();
   const size_t which = lanes_[1] && &lane == &*lanes_[1] ? 1 : 0;
-  const BrickAtlas& atlas = seen_->atlasFor(which, r.view, r.width, r.height, moving);
+  const BrickAtlas& atlas = live_ ? *live_ : seen_->atlasFor(which, r.view, r.width, r.height, moving);
   MarchPass& pass = passFor(r.show);
   if (r.show == View::slice) pass.setSlice(r.slice.axis, slicePlace(r.slice, *bricks_, atlas.layout().frame));
   pass.setEnvironment(r.view.environmentMap);
@@ -169,7 +180,7 @@ LaneStats Viewer::stats(Side side) const {
 }
 
 uint64_t Viewer::gpuBytes() const {
-  uint64_t bytes = seen_ ? seen_->gpuBytes() : 0;
+  uint64_t bytes = (seen_ ? seen_->gpuBytes() : 0) + (live_ ? live_->gpuBytes() : 0);
   for (const auto& pass : passes_) bytes += pass ? pass->gpuBytes() : 0;
   for (const auto& lane : lanes_) bytes += lane ? lane->gpuBytes() : 0;
   return bytes;

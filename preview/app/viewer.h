@@ -38,8 +38,11 @@ class Viewer {
   /// thrown: InputError or WorldError. Pictures must be restarted.
   void setVolume(std::shared_ptr<const BrickVolume> bricks);
   const BrickVolume& volume() const { return *bricks_; }
-  /// For live particles, which write their densities into it; nullptr before a volume is set.
-  BrickAtlas* atlas() { return atlas_ ? &*atlas_ : nullptr; }
+  /// The same for a volume whose densities are written on the GPU, into liveAtlas(): floats at every brick's
+  /// place.
+  void setLiveVolume(std::shared_ptr<const BrickVolume> bricks);
+  /// nullptr where setVolume() came last.
+  BrickAtlas* liveAtlas() { return live_ ? &*live_ : nullptr; }
 
   void restart(Side side, const LaneRequest& request);
   /// Forgets the kept side.
@@ -71,6 +74,7 @@ class Viewer {
   RestGoal goal_;
   std::shared_ptr<const BrickVolume> bricks_;
   std::optional<SeenVolume> seen_;
+  std::optional<BrickAtlas> live_;                  // in place of what seen_ would make
   std::array<std::optional<MarchPass>, 3> passes_;  // by MarchWrites; compiled when first needed
   GlProgram display_;
   std::array<GlBuffer, kSideCount> displayParameters_;  // for rays to the sky
