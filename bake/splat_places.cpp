@@ -49,6 +49,9 @@ void forEachChunk(size_t count, size_t chunks, const Body& body) {
 
 SplatPlaces::SplatPlaces(const SplatParticles& particles, const SplatSettings& settings)
     : particles_(particles), settings_(settings) {
+  if (settings_.voxelSize < kSmallestVoxel)
+    throw SplatError("voxels of " + shown(settings_.voxelSize) + " world units are below " +
+                     shown(kSmallestVoxel) + ", the smallest that a .vdb can hold; use larger units");
   if (particles_.size() == 0) return;
   findBox();
   sortByTile();

@@ -78,6 +78,9 @@ class Voxelizer {
         progress_(progress) {}
 
   Voxelized run() {
+    if (settings_.voxelSize < kSmallestVoxel)
+      throw VoxelizeError("voxels of " + shown(settings_.voxelSize) + " world units are below " +
+                          shown(kSmallestVoxel) + ", the smallest that a .vdb can hold; use larger units");
     findLeaves(indexBox(field_.support(), settings_.voxelSize));
     fillLeaves();
     return gather();

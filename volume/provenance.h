@@ -25,6 +25,10 @@ struct Provenance {
   std::optional<double> mass;  // Σ of stored densities · voxel volume, density units · world units³
 };
 
+/// Voxels below this many world units are refused: OpenVDB takes a transform of less than 3e-15 in volume for
+/// one that flattens space.
+inline constexpr double kSmallestVoxel = 1.5e-5;
+
 /// "Nephele 0.1.0"; never begins with "Houdini" (Blender would turn the file).
 std::string creatorName();
 

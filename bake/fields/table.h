@@ -81,9 +81,9 @@ struct BuildContext {
   int upAxis = 2;          // 1: y, 2: z
   uint32_t seed = 0;       // the recipe's; mixed with each field's own
   std::vector<BandLimitNote>* notes = nullptr;
-  double time = 0.0;           // seconds since frame 0
-  int mostOctaves = kAllOctaves;  // of a fractal sum; the rest is left out as if the grid could not hold it
+  double time = 0.0;              // seconds since frame 0
   std::optional<Loop> loop{};     // then motion follows this in place of the time
+  int mostOctaves = kAllOctaves;  // of a fractal sum; the rest is left out as if the grid could not hold it
 };
 
 /// Parameters by name, all present, all in range.
