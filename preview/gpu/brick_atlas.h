@@ -52,7 +52,11 @@ class BrickAtlas {
   /// old.
   GLuint texture() const { return atlas_.name(); }
   GLuint indexTexture() const { return index_.name(); }
-  void contentsChanged() { ++contents_; }
+  /// No density exceeds `bound`, which codes in the index are shares of.
+  void contentsChanged(float bound) {
+    ++contents_;
+    layout_.maximum = bound;
+  }
   /// Counts those changes.
   uint64_t contents() const { return contents_; }
 

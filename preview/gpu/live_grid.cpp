@@ -188,7 +188,7 @@ void LiveGrid::rebuild(const LiveMotion& motion, const LiveBox& box, double most
   glUseProgram(index_.name());
   glDispatchCompute(groups(volumeOf(bricks_), kIndexGroup), 1, 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  atlas.contentsChanged();
+  atlas.contentsChanged(static_cast<float>(boundOf(box, mostMass)));
   checkGl("rebuilding the live grid");
 }
 
