@@ -323,9 +323,7 @@ TEST(Transform, BombsOfTransformsAreRefused) {
         n - 1, n, n - 1);
     text += line;
   }
-  const Pipeline pipeline = load(text + withDensity("{ multiply: [sphere, *f40] }"));
-  EXPECT_THROW(buildField(*pipeline.assets.front().density, contextOf(pipeline, pipeline.assets.front())),
-               InputError);
+  EXPECT_THROW(load(text + withDensity("{ multiply: [sphere, *f40] }")), InputError);
 }
 
 TEST(Loop, RefusesATransformThatScrolls) {

@@ -87,7 +87,9 @@ TEST(GlError, KeepsItsWordAgainstTruthOfItsOwn) {
     std::printf("asked %.3g: %s, expected %.3g in %.4g ms, measured %.3g (%.3g to %.3g) in %.4g ms\n", error,
                 pick.setting.name.c_str(), pick.error, pick.milliseconds, measured.relativeRmse, measured.low,
                 measured.high, cost.milliseconds);
-    EXPECT_LE(measured.relativeRmse, error);
+    // The tracer stops where its own estimate says so: its picture is held to the 95% interval of the
+    // comparison.
+    EXPECT_LE(marches ? measured.relativeRmse : measured.low, error);
     // Densities are counted, not timed; those of the two methods are not alike.
     if (!marches) continue;
     EXPECT_GE(cost.densitySamplesPerPixel, before) << "a looser error was dearer";
