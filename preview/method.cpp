@@ -12,8 +12,8 @@ namespace {
 
 constexpr MethodRow kMethods[] = {
     {"march", "steps along rays from inverse projection, skipping empty bricks", makeMarchMethod},
-    {"cube", "rays from the interpolated faces of the bounding cube", nullptr},
-    {"dda", "an exact voxel walk through piecewise-constant density", nullptr},
+    {"cube", "rays from the interpolated faces of the bounding cube", makeCubeMethod},
+    {"dda", "an exact voxel walk through piecewise-constant density", makeDdaMethod},
     {"impostor", "camera-facing quads textured by ray marching", nullptr},
     {"phenomenological", "a surface shader for cumulus", nullptr},
     {"reference", "unbiased path tracing on the CPU: delta tracking, ratio tracking, roulette",

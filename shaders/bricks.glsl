@@ -81,6 +81,11 @@ float brickDensity(uvec2 word, vec3 position) {
   return brickValue(atlas, word, position) * (NPH_SCALED ? wordMaximum(word) : 1.0);
 }
 
+float brickSample(uvec2 word, ivec3 place) {
+  ivec3 kept = ivec3(keptPosition(word, vec3(place)));
+  return texelFetch(atlas, wordCorner(word) + kept, 0).r * (NPH_SCALED ? wordMaximum(word) : 1.0);
+}
+
 float cachedColumn(vec3 texel) { return cacheFetch(columnCache, texel).r; }
 
 vec4 cachedSky(int part, vec3 texel) {

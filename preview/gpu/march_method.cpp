@@ -48,12 +48,12 @@ void takeEvery(int stride, shared::MarchParameters& p) {
 
 class MarchMethod : public Method {
  public:
-  explicit MarchMethod(const MethodOptions& options) {
+  MarchMethod(const MethodOptions& options, MarchKind kind) : kind_(kind) {
     auto start = Clock::now();
     context_.emplace();
     secondsDriver = secondsSince(start);
     start = Clock::now();
-    pass_.emplace(options.filter);
+    pass_.emplace(options.filter, std::vector<TextChange>{}, MarchWrites::radiance, kind);
     limits_.bytes = options.vramBytes;
     secondsShaders = secondsSince(start);
     renderer = glRenderer();
@@ -68,7 +68,7 @@ class MarchMethod : public Method {
   Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
     NEPHELE_CHECK_EQ(volume_.has_value(), true);
     const auto start = Clock::now();
-    const BrickAtlas& atlas = volume_->atlasFor(0, view, request.width, request.height, false);
+    const BrickAtlas& atlas = atlasFor(view, request);
     const int width = strided(request.width, request.stride),
               height = strided(request.height, request.stride);
     const Film film(width, height);
@@ -111,7 +111,20 @@ class MarchMethod : public Method {
   }
 
  private:
-  std::optional<EglContext> context_;  // first, so that it goes last
+  /// Voxels are walked as they are stored, however small they are in the picture.
+  const BrickAtlas& atlasFor(const ViewedScene& view, const PictureRequest& request) {
+    ViewedScene seen = view;
+    if (kind_ == MarchKind::dda) seen.scene.march.levelPixels = 0.0;
+    const BrickAtlas& atlas = volume_->atlasFor(0, seen, request.width, request.height, false);
+    const BrickLayout& layout = atlas.layout();
+    if (kind_ == MarchKind::dda && (layout.frame.level > 0 || layout.mostRise > 0))
+      throw InputError({},
+                       "--method dda walks the finest voxels, and --vram leaves no memory for all of them");
+    return atlas;
+  }
+
+  MarchKind kind_;
+  std::optional<EglContext> context_;  // before what needs it, so that it goes after
   std::optional<MarchPass> pass_;
   GpuLimits limits_;
   std::optional<SeenVolume> volume_;
@@ -121,7 +134,15 @@ class MarchMethod : public Method {
 }  // namespace
 
 std::unique_ptr<Method> makeMarchMethod(const MethodOptions& options) {
-  return std::make_unique<MarchMethod>(options);
+  return std::make_unique<MarchMethod>(options, MarchKind::march);
+}
+
+std::unique_ptr<Method> makeCubeMethod(const MethodOptions& options) {
+  return std::make_unique<MarchMethod>(options, MarchKind::cube);
+}
+
+std::unique_ptr<Method> makeDdaMethod(const MethodOptions& options) {
+  return std::make_unique<MarchMethod>(options, MarchKind::dda);
 }
 
 }  // namespace nephele

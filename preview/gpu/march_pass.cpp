@@ -2,6 +2,7 @@
 #include "preview/gpu/march_pass.h"
 
 #include <array>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "base/blue_noise.h"
@@ -11,17 +12,22 @@ namespace {
 
 // Locations and bindings as shaders/march.frag and shaders/bricks.glsl declare them.
 constexpr GLuint kParameterBinding = 0, kJitterUnit = 4, kSkipsBinding = 3;
-constexpr GLint kSubPixelLocation = 0, kSampleNumberLocation = 1, kSliceLocation = 3;
-constexpr int kTriangleCorners = 3;
+constexpr GLint kSubPixelLocation = 0, kSampleNumberLocation = 1, kSliceLocation = 3,
+                kPictureSizeLocation = 4;
+constexpr int kTriangleCorners = 3, kCubeCorners = 36;
+// NPH_METHOD of shaders/march.frag: the kinds of march_pass.h, and a sample without medium.
+constexpr int kMethodCube = static_cast<int>(MarchKind::cube), kMethodNothing = 3;
 
 /// What these parameters do not need is left out, since some drivers run the branches that no pixel takes.
-std::vector<std::string> definesFor(Filter filter, MarchWrites writes, const shared::MarchParameters& p) {
+std::vector<std::string> definesFor(Filter filter, MarchWrites writes, int method,
+                                    const shared::MarchParameters& p) {
   const int sky = p.skyUp.w == 0.0f ? 0 : p.cacheShape.y > 0 ? 1 : 2;
   const auto flag = [](const char* name, bool on) { return std::string(name) + (on ? " true" : " false"); };
   bool points = false;
   for (int i = 0; i < p.counts.x; ++i)
     points = points || static_cast<int>(p.lights[i].direction.w) == shared::kLightPoint;
   return {filter == Filter::exact ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
+          "NPH_METHOD " + std::to_string(method),
           "NPH_VIEW " + std::to_string(static_cast<int>(writes)),
           flag("NPH_CACHED", p.cache.x > 0.0f),
           flag("NPH_NEAR", p.cache.w > 0.0f),
@@ -33,6 +39,12 @@ std::vector<std::string> definesFor(Filter filter, MarchWrites writes, const sha
           flag("NPH_LEVELS", p.cacheShape.w != 0),
           p.emission.x > 0.0f ? "NPH_HEAT 1" : "NPH_HEAT 0",
           "NPH_SKY " + std::to_string(sky)};
+}
+
+/// Whether the way from the index to the world turns right hands into left ones.
+bool mirrored(const shared::MarchParameters& p) {
+  return glm::dot(glm::cross(glm::vec3(p.worldFromIndexX), glm::vec3(p.worldFromIndexY)),
+                  glm::vec3(p.worldFromIndexZ)) < 0.0f;
 }
 
 GlTexture makeJitterTile() {
@@ -49,9 +61,11 @@ bool wantsCache(const shared::MarchParameters& p) { return p.cache.x > 0.0f || p
 
 }  // namespace
 
-MarchPass::MarchPass(Filter filter, const std::vector<TextChange>& changes, MarchWrites writes)
+MarchPass::MarchPass(Filter filter, const std::vector<TextChange>& changes, MarchWrites writes,
+                     MarchKind kind)
     : filter_(filter),
       writes_(writes),
+      kind_(kind),
       changes_(changes),
       buffer_(makeBuffer()),
       skips_(makeBuffer()),
@@ -61,13 +75,15 @@ MarchPass::MarchPass(Filter filter, const std::vector<TextChange>& changes, Marc
   const std::array<uint32_t, 2> zeros{};
   glNamedBufferStorage(skips_.name(), sizeof zeros, zeros.data(), GL_DYNAMIC_STORAGE_BIT);
   checkGl("making the parameter buffer");
-  program();
+  program(static_cast<int>(kind_));
 }
 
-const GlProgram& MarchPass::program() {
-  const std::vector<std::string> defines = definesFor(filter_, writes_, parameters_);
+const GlProgram& MarchPass::program(int method) {
+  const std::vector<std::string> defines = definesFor(filter_, writes_, method, parameters_);
   GlProgram& built = programs_[defines];
-  if (built.name() == 0) built = buildProgram("screen.vert", "march.frag", defines, changes_);
+  if (built.name() == 0)
+    built =
+        buildProgram(method == kMethodCube ? "cube.vert" : "screen.vert", "march.frag", defines, changes_);
   return built;
 }
 
@@ -123,16 +139,30 @@ void MarchPass::draw(const BrickAtlas& atlas, const Film& film, glm::vec2 subPix
   sky_.bind();
   if (caches_[which_]) caches_[which_]->bind();
   glBindTextureUnit(kJitterUnit, jitter_.name());
-  glUseProgram(program().name());
   glBindVertexArray(noVertices_.name());
   glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, buffer_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSkipsBinding, skips_.name());
-  glUniform2f(kSubPixelLocation, subPixel.x, subPixel.y);
-  glUniform1ui(kSampleNumberLocation, number);
-  if (writes_ == MarchWrites::slice) glUniform2f(kSliceLocation, slice_.x, slice_.y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(where.x, where.y, where.width, where.height);
-  glDrawArrays(GL_TRIANGLES, 0, kTriangleCorners);
+  const auto useProgram = [&](int method) {
+    glUseProgram(program(method).name());
+    glUniform2f(kSubPixelLocation, subPixel.x, subPixel.y);
+    glUniform1ui(kSampleNumberLocation, number);
+  };
+  if (kind_ == MarchKind::cube) {
+    useProgram(kMethodNothing);
+    glDrawArrays(GL_TRIANGLES, 0, kTriangleCorners);
+    useProgram(kMethodCube);
+    glUniform2f(kPictureSizeLocation, static_cast<float>(film.width()), static_cast<float>(film.height()));
+    glEnable(GL_CULL_FACE);
+    glFrontFace(mirrored(parameters_) ? GL_CCW : GL_CW);
+    glDrawArrays(GL_TRIANGLES, 0, kCubeCorners);
+    glDisable(GL_CULL_FACE);
+  } else {
+    useProgram(static_cast<int>(kind_));
+    if (writes_ == MarchWrites::slice) glUniform2f(kSliceLocation, slice_.x, slice_.y);
+    glDrawArrays(GL_TRIANGLES, 0, kTriangleCorners);
+  }
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
 }

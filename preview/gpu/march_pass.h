@@ -25,12 +25,15 @@ struct PixelRectangle {
 /// What a pass writes: the lit picture, or one of the looks inside of shaders/view.glsl.
 enum class MarchWrites { radiance, slice, skipped };
 
+/// How a pass finds radiance: the methods of MODEL.md that share the march's light.
+enum class MarchKind { march, cube, dda };
+
 /// The compiled march with its parameters and, where they ask for it, its light cache.
 class MarchPass {
  public:
   /// Compiles for one filter; `changes` are for tests. Throws WorldError where the driver refuses.
   explicit MarchPass(Filter filter, const std::vector<TextChange>& changes = {},
-                     MarchWrites writes = MarchWrites::radiance);
+                     MarchWrites writes = MarchWrites::radiance, MarchKind kind = MarchKind::march);
 
   /// For MarchWrites::slice: the plane across `axis` (0, 1, 2) at `place` voxels from the brick grid's
   /// corner.
@@ -61,10 +64,11 @@ class MarchPass {
   SkipCheck takeSkipCheck();
 
  private:
-  const GlProgram& program();
+  const GlProgram& program(int method);
 
   Filter filter_;
   MarchWrites writes_;
+  MarchKind kind_;
   glm::vec2 slice_{0.0f};
   std::vector<TextChange> changes_;
   std::map<std::vector<std::string>, GlProgram>

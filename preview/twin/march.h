@@ -18,6 +18,7 @@ struct SkyArrays {
 ///   float density(uvec2 word, vec3 kept, ivec3 samples) const     of the `samples` that the brick keeps,
 ///   from the
 ///                                                     first, without its scale
+///   float sample(uvec2 word, ivec3 kept) const        one of those, likewise; asked by walkVoxels alone
 ///   uint block(ivec3 block) const, float column(vec3 texel) const, vec4 sky(int part, vec3 texel) const
 ///                                                     asked where parameters.cache or cacheShape say so
 ///   uvec2 heatWord(ivec3 brick) const, float heatValue(uvec2 word, vec3 kept, ivec3 samples) const
@@ -31,9 +32,12 @@ struct March {
   SkyArrays skyArrays{};
 
   uvec2 brickWord(ivec3 brick) const { return bricks->word(brick); }
+  float scaleOf(uvec2 word) { return params.counts.z != 0 ? wordMaximum(word) : 1.0f; }
   float brickDensity(uvec2 word, vec3 position) {
-    const float kept = bricks->density(word, keptPosition(word, position), wordSamples(word));
-    return params.counts.z != 0 ? kept * wordMaximum(word) : kept;
+    return bricks->density(word, keptPosition(word, position), wordSamples(word)) * scaleOf(word);
+  }
+  float brickSample(uvec2 word, ivec3 place) {
+    return bricks->sample(word, ivec3(keptPosition(word, vec3(place)))) * scaleOf(word);
   }
   uvec2 storedWord(ivec3 brick) const { return bricks->word(brick); }
   uint blockWord(ivec3 block) const { return bricks->block(block); }
@@ -63,6 +67,8 @@ struct March {
 #include "shaders/shared/light_cache_fill.glsl"
 #include "shaders/shared/march.glsl"
 #include "shaders/shared/walk.glsl"
+// After the march, whose types it takes.
+#include "shaders/shared/dda.glsl"
 #undef NPH_CACHED
 #undef NPH_EMISSION
 #undef NPH_CHECK

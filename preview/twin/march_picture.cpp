@@ -76,6 +76,9 @@ struct ArraySource {
   }
 
   float density(uvec2 word, vec3 kept, ivec3 samples) const { return value(atlas, word, kept, samples); }
+  float sample(uvec2 word, ivec3 kept) const {
+    return atlas.texels[flat(atlas.size, brick_word::corner(word) + kept)];
+  }
   float heatValue(uvec2 word, vec3 kept, ivec3 samples) const {
     return value(heatAtlas, word, kept, samples);
   }

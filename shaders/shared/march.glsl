@@ -35,20 +35,42 @@ NPH_FN float stepStart(float jitter, uint number) {
   return float((uint(jitter * 16777216.0f) * 256u + number * 2654435769u) >> 8u) * (1.0f / 16777216.0f);
 }
 
-// One ray through picture position `at` (pixels from the top left corner); each step is read at the share `start` of its
-// length; `random` is the pixel's own, `number` the sample's.
-NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
+NPH_FN MarchResult nothingMarched() {
   MarchResult result;
   result.radiance = vec3(0.0f);
   result.opticalDepth = vec3(0.0f);
   result.depth = 0.0f;
   result.depthWeight = 0.0f;
   result.cost = vec4(0.0f);
+  return result;
+}
+
+// A ray in the shape that walks take.
+struct Ray {
+  vec3 origin;     // index space
+  vec3 direction;  // voxels per world unit along the ray
+  vec3 ray;        // the same, unit and in world axes
+  float before;    // world distance from the camera to `origin`
+};
+
+// The ray through picture position `at`, pixels from the top left corner.
+NPH_FN Ray rayThrough(vec2 at) {
+  Ray r;
   vec3 rayLong = vec3(params.rayCorner) + at.x * vec3(params.rayDx) + at.y * vec3(params.rayDy);
   float stretch = length(rayLong);
-  vec3 ray = rayLong / stretch;
-  vec3 origin = vec3(params.originCorner) + at.x * vec3(params.originDx) + at.y * vec3(params.originDy);
-  vec3 direction = (vec3(params.directionCorner) + at.x * vec3(params.directionDx) + at.y * vec3(params.directionDy)) / stretch;
+  r.ray = rayLong / stretch;
+  r.origin = vec3(params.originCorner) + at.x * vec3(params.originDx) + at.y * vec3(params.originDy);
+  r.direction = (vec3(params.directionCorner) + at.x * vec3(params.directionDx) + at.y * vec3(params.directionDy)) / stretch;
+  r.before = params.originCorner.w * stretch;
+  return r;
+}
+
+// Marches along a ray; each step is read at the share `start` of its length; `random` is the pixel's own, `number` the
+// sample's.
+NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
+  MarchResult result = nothingMarched();
+  vec3 origin = r.origin;
+  vec3 direction = r.direction;
   float tNear = 0.0f;
   float tFar = 0.0f;
   if (!intersectBox(origin, direction, vec3(params.boxMin), vec3(params.boxMax), tNear, tFar)) return result;
@@ -101,7 +123,7 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
       result.opticalDepth += x;
       vec3 left = exp(-result.opticalDepth);
       float step = dot(before - left, vec3(1.0f / 3.0f));
-      result.depth += step * (params.originCorner.w * stretch + middle);
+      result.depth += step * (r.before + middle);
       taken += step;
       before = left;
       last = max(left.x, max(left.y, left.z)) < params.environment.w;
@@ -116,7 +138,7 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
       // Each place has numbers of its own, so that more or fewer drawn at another do not change them.
       uint placeRandom = hashBits(random ^ lit);
       vec3 position = origin + (place / mean) * direction;
-      vec3 light = vec3(params.sigmaS) * inScattering(position, ray, enough, lit, number, placeRandom, result.cost);
+      vec3 light = vec3(params.sigmaS) * inScattering(position, r.ray, enough, lit, number, placeRandom, result.cost);
       lit += 1u;
       result.radiance += light * share;
     }
@@ -124,4 +146,9 @@ NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
   }
   result.cost.y = max(result.cost.y, 1.0f - arrived);
   return result;
+}
+
+// One ray through a picture position.
+NPH_FN MarchResult marchRay(vec2 at, float start, uint random, uint number) {
+  return marchAlong(rayThrough(at), start, random, number);
 }
