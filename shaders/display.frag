@@ -1,5 +1,7 @@
 // Shows a film in the window: means over samples, the backdrop or the environment behind, the project's tone curve; or one
-// quantity as colours of a scale. The curve is that of base/picture.h: y = 1 − e^(−x · 2^EV), then the sRGB transfer function.
+// quantity as colours of a scale. NPH_SHOWN says which (preview/app/views.h), NPH_BEHIND what stands behind the medium
+// (preview/behind.h): some drivers run the branches that no pixel takes. The curve is that of base/picture.h:
+// y = 1 − e^(−x · 2^EV), then the sRGB transfer function.
 #version 450 core
 #include "dialect.glsl"
 #include "shared/parameters.glsl"
@@ -12,26 +14,25 @@ layout(location = 0) uniform vec3 backdropBottom;
 layout(location = 1) uniform vec3 backdropTop;
 layout(location = 3) uniform vec2 windowSize;
 layout(location = 4) uniform float exposure;  // 2^EV
-layout(location = 5) uniform int behind;   // what stands behind the medium: kBackdrop, kSky or kNothing
-layout(location = 6) uniform int view;     // preview/app/views.h
 layout(location = 7) uniform float scale;  // upper end of the view's scale
 
 layout(location = 0) out vec4 outColour;
 
+#define NPH_SHOWN_SKY true
 #include "sky.glsl"
 #include "shared/phase.glsl"
 #include "shared/random.glsl"
 #include "shared/environment.glsl"
 
 // As preview/behind.h numbers them; with anything else the film holds the environment already.
-const int kBackdrop = 0;
-const int kSky = 1;
+#define BACKDROP 0
+#define SKY 1
 
-const int kRadiance = 0;
-const int kTransmittance = 1;
-const int kOpticalDepth = 2;
-const int kSlice = 3;
-const int kSteps = 4;
+#define RADIANCE 0
+#define TRANSMITTANCE 1
+#define OPTICAL_DEPTH 2
+#define STEPS 4
+
 const vec3 kGround = vec3(0.012);  // behind a scale's colours, linear
 
 vec3 srgbFromLinear(vec3 x) {
@@ -49,14 +50,14 @@ vec3 scaleColour(float x) {
 
 vec3 radianceColour(vec4 radiance, vec4 transmittance, float count, vec2 uv) {
   vec3 colour = radiance.rgb / count * exposure;
-  if (behind == kSky) {
-    vec2 at = uv * windowSize;
-    vec3 ray = params.rayCorner.xyz + at.x * params.rayDx.xyz + at.y * params.rayDy.xyz;
-    colour += transmittance.rgb / count * environmentRadiance(normalize(ray)) * exposure;
-  } else if (behind == kBackdrop) {
-    // The backdrop is no light, and exposure does not change it.
-    colour += (1.0 - radiance.a / count) * mix(backdropTop, backdropBottom, uv.y);
-  }
+#if NPH_BEHIND == SKY
+  vec2 at = uv * windowSize;
+  vec3 ray = params.rayCorner.xyz + at.x * params.rayDx.xyz + at.y * params.rayDy.xyz;
+  colour += transmittance.rgb / count * environmentRadiance(normalize(ray)) * exposure;
+#elif NPH_BEHIND == BACKDROP
+  // The backdrop is no light, and exposure does not change it.
+  colour += (1.0 - radiance.a / count) * mix(backdropTop, backdropBottom, uv.y);
+#endif
   return srgbFromLinear(1.0 - exp(-max(colour, 0.0)));
 }
 
@@ -67,19 +68,19 @@ void main() {
   vec4 transmittance = texture(transmittanceSum, uv);
   float count = max(transmittance.a, 1.0);
   vec3 colour = vec3(0.0);
-  if (view == kRadiance) {
-    colour = radianceColour(radiance, transmittance, count, uv);
-  } else if (view == kTransmittance) {
-    colour = srgbFromLinear(clamp(transmittance.rgb / count, 0.0, 1.0));
-  } else if (view == kOpticalDepth) {
-    vec3 t = clamp(transmittance.rgb / count, exp(-scale), 1.0);
-    colour = scaleColour(-log((t.r + t.g + t.b) / 3.0) / scale);
-  } else if (view == kSteps) {
-    colour = scaleColour(texture(depthSum, uv).z / count / scale);
-  } else {  // the slice and the skipped share hold value · weight, and the weight
-    float weight = radiance.a / count;
-    vec3 inside = scaleColour(radiance.r / max(radiance.a, 1e-6) / scale);
-    colour = mix(srgbFromLinear(kGround), inside, weight);
-  }
+#if NPH_SHOWN == RADIANCE
+  colour = radianceColour(radiance, transmittance, count, uv);
+#elif NPH_SHOWN == TRANSMITTANCE
+  colour = srgbFromLinear(clamp(transmittance.rgb / count, 0.0, 1.0));
+#elif NPH_SHOWN == OPTICAL_DEPTH
+  vec3 t = clamp(transmittance.rgb / count, exp(-scale), 1.0);
+  colour = scaleColour(-log((t.r + t.g + t.b) / 3.0) / scale);
+#elif NPH_SHOWN == STEPS
+  colour = scaleColour(texture(depthSum, uv).z / count / scale);
+#else  // the slice and the skipped share hold value · weight, and the weight
+  float weight = radiance.a / count;
+  vec3 inside = scaleColour(radiance.r / max(radiance.a, 1e-6) / scale);
+  colour = mix(srgbFromLinear(kGround), inside, weight);
+#endif
   outColour = vec4(colour, 1.0);
 }

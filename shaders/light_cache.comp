@@ -19,6 +19,9 @@ layout(location = 1) uniform int light;  // −1: the sky
 
 #define NPH_CACHED false  // nothing is scattered here
 #define NPH_SKY 0
+#define NPH_GREY false
+#define NPH_MAP false  // marched for
+#define NPH_SHOWN_SKY false
 #define NPH_NEAR false
 #define NPH_POINTS true
 #define NPH_POWDER false

@@ -31,7 +31,7 @@ vec2 densityOnSlice(vec3 origin, vec3 direction, float tNear, float tFar) {
   float t = (slice.y - origin[axis]) / direction[axis];
   if (!(t >= tNear && t <= tFar)) return vec2(0.0);
   float toExit = 0.0;
-  return vec2(densityAndExit(origin + t * direction, direction, toExit), 1.0);
+  return vec2(densityAndExit(origin + t * direction, courseOf(direction), toExit), 1.0);
 }
 
 vec2 skippedShare(vec3 origin, vec3 direction, float tNear, float tFar) {

@@ -12,15 +12,7 @@ namespace nephele {
 namespace {
 
 // As shaders/display.frag declares them.
-enum DisplayLocation : GLint {
-  kBottom = 0,
-  kTop = 1,
-  kWindowSize = 3,
-  kExposure = 4,
-  kBehind = 5,
-  kView = 6,
-  kScale = 7
-};
+enum DisplayLocation : GLint { kBottom = 0, kTop = 1, kWindowSize = 3, kExposure = 4, kScale = 7 };
 constexpr GLuint kParameterBinding = 0;
 
 void setRgb(GLint location, const Rgb& rgb) {
@@ -30,11 +22,7 @@ void setRgb(GLint location, const Rgb& rgb) {
 }  // namespace
 
 Viewer::Viewer(Filter filter, unsigned seed, uint64_t vramBytes)
-    : filter_(filter),
-      seed_(seed),
-      limits_{vramBytes, 0},
-      display_(buildProgram("screen.vert", "display.frag")),
-      noVertices_(makeVertexArray()) {
+    : filter_(filter), seed_(seed), limits_{vramBytes, 0}, noVertices_(makeVertexArray()) {
   for (GlBuffer& parameters : displayParameters_) {
     parameters = makeBuffer();
     glNamedBufferStorage(parameters.name(), sizeof(shared::MarchParameters), nullptr, GL_DYNAMIC_STORAGE_BIT);
@@ -77,6 +65,20 @@ MarchPass& Viewer::passFor(View view) {
   auto& pass = passes_[static_cast<size_t>(writes)];
   if (!pass) pass.emplace(filter_, std::vector<TextChange>{}, writes);
   return *pass;
+}
+
+const GlProgram& Viewer::displayFor(const LaneRequest& request, const Scene& shown) {
+  const bool radiance = request.show == View::radiance;
+  // Behind other views stands nothing, so that they share a program.
+  const Behind behind = radiance ? behindOf(shown) : Behind::nothing;
+  const bool map = behind == Behind::sky && shown.environment.kind == Environment::Kind::exr;
+  GlProgram& built = displays_[{request.show, behind, map}];
+  if (built.name() == 0)
+    built = buildProgram("screen.vert", "display.frag",
+                         {"NPH_SHOWN " + std::to_string(static_cast<int>(request.show)),
+                          "NPH_BEHIND " + std::to_string(static_cast<int>(behind)),
+                          std::string("NPH_MAP ") + (map ? "true" : "false")});
+  return built;
 }
 
 LaneTools Viewer::toolsFor(const Lane& lane, bool moving) {
@@ -131,15 +133,13 @@ void Viewer::showSide(size_t side, const Shown& shown, const Screen& screen) {
   pass.bindEnvironment();
   glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, displayParameters_[side].name());
   film->bindForDisplay();
-  glUseProgram(display_.name());
+  glUseProgram(displayFor(lane.request(), shown.scene).name());
   glBindVertexArray(noVertices_.name());
   const BackdropColours colours = shown.scene.backdrop.value_or(BackdropColours{});
   setRgb(kBottom, colours.bottom);
   setRgb(kTop, colours.top);
   glUniform2f(kWindowSize, static_cast<float>(screen.width), static_cast<float>(screen.height));
   glUniform1f(kExposure, static_cast<float>(std::exp2(shown.exposureEv)));
-  glUniform1i(kBehind, static_cast<int>(behindOf(shown.scene)));
-  glUniform1i(kView, static_cast<int>(lane.request().show));
   glUniform1f(kScale, static_cast<float>(lane.stats().scale));
   constexpr GLsizei kTriangleCorners = 3;
   glDrawArrays(GL_TRIANGLES, 0, kTriangleCorners);

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
+#include <tuple>
 
 #include "preview/app/lane.h"
+#include "preview/behind.h"
 #include "preview/gpu/seen_volume.h"
 
 namespace nephele {
@@ -66,6 +69,8 @@ class Viewer {
  private:
   MarchPass& passFor(View view);
   LaneTools toolsFor(const Lane& lane, bool moving);
+  /// What puts such a picture into the window.
+  const GlProgram& displayFor(const LaneRequest& request, const Scene& shown);
   void showSide(size_t side, const Shown& shown, const Screen& screen);
 
   Filter filter_;
@@ -76,7 +81,8 @@ class Viewer {
   std::optional<SeenVolume> seen_;
   std::optional<BrickAtlas> live_;                  // in place of what seen_ would make
   std::array<std::optional<MarchPass>, 3> passes_;  // by MarchWrites; compiled when first needed
-  GlProgram display_;
+  std::map<std::tuple<View, Behind, bool>, GlProgram>
+      displays_;  // the last: a lat-long picture; built when first needed
   std::array<GlBuffer, kSideCount> displayParameters_;  // for rays to the sky
   GlVertexArray noVertices_;
   std::array<std::optional<Lane>, kSideCount> lanes_;

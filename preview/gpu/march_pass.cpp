@@ -29,6 +29,7 @@ std::vector<std::string> definesFor(Filter filter, MarchWrites writes, int metho
   return {filter == Filter::exact ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
           "NPH_METHOD " + std::to_string(method),
           "NPH_VIEW " + std::to_string(static_cast<int>(writes)),
+          flag("NPH_GREY", p.sigmaT.x == p.sigmaT.y && p.sigmaT.y == p.sigmaT.z),
           flag("NPH_CACHED", p.cache.x > 0.0f),
           flag("NPH_NEAR", p.cache.w > 0.0f),
           flag("NPH_POINTS", points),
@@ -37,6 +38,8 @@ std::vector<std::string> definesFor(Filter filter, MarchWrites writes, int metho
           flag("NPH_SCALED", p.counts.z != 0),
           p.blockCount.w != 0 ? "NPH_CHECK 1" : "NPH_CHECK 0",
           flag("NPH_LEVELS", p.cacheShape.w != 0),
+          flag("NPH_MAP", static_cast<int>(p.skyUp.w) == shared::kSkyMap),
+          flag("NPH_SHOWN_SKY", p.skyForward.w > 0.0f),
           p.emission.x > 0.0f ? "NPH_HEAT 1" : "NPH_HEAT 0",
           "NPH_SKY " + std::to_string(sky)};
 }

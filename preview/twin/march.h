@@ -55,6 +55,9 @@ struct March {
 #define NPH_CACHED (params.cache.x > 0.0f)
 #define NPH_CHECK 0
 #define NPH_LEVELS (params.cacheShape.w != 0)
+#define NPH_GREY (params.sigmaT.x == params.sigmaT.y && params.sigmaT.y == params.sigmaT.z)
+#define NPH_MAP true
+#define NPH_SHOWN_SKY true
 #define NPH_NEAR (params.cache.w > 0.0f)
 #define NPH_POINTS true
 #define NPH_POWDER true
@@ -73,6 +76,9 @@ struct March {
 #undef NPH_EMISSION
 #undef NPH_CHECK
 #undef NPH_LEVELS
+#undef NPH_GREY
+#undef NPH_MAP
+#undef NPH_SHOWN_SKY
 #undef NPH_NEAR
 #undef NPH_POINTS
 #undef NPH_POWDER

@@ -13,6 +13,7 @@ NPH_FN MarchResult walkVoxels(Ray r, uint random, uint number) {
   if (!intersectBox(origin, direction, vec3(params.boxMin) + vec3(1.0f), vec3(params.boxMax), tNear, tFar)) return result;
   float margin = params.walk.x / length(direction);
   float enough = columnThatHides(params.environment.w);
+  Course course = courseOf(direction);
   vec3 before = vec3(1.0f);
   uint lit = 0u;
   float t = tNear;
@@ -30,13 +31,13 @@ NPH_FN MarchResult walkVoxels(Ray r, uint random, uint number) {
     float size = empty ? kBrickEdge * float(edge) : float(edge);
     vec3 local = floor((position - corner) / float(edge));
     vec3 cellCorner = empty ? corner : corner + local * float(edge);
-    float tEnd = min(tFar, t + margin + max(0.0f, wayOut(position, direction, cellCorner, size)));
+    float tEnd = min(tFar, t + margin + max(0.0f, wayOut(position, course, cellCorner, size)));
     float ds = tEnd - t;
     float rho = empty ? 0.0f : brickSample(word, clamp(ivec3(local), ivec3(0), ivec3(7)));
     result.cost.x += empty ? 0.0f : 1.0f;
     vec3 x = (rho * ds) * vec3(params.sigmaT);
     result.opticalDepth += x;
-    vec3 left = exp(-result.opticalDepth);
+    vec3 left = lessened(result.opticalDepth);
     float taken = dot(before - left, vec3(1.0f / 3.0f));
     float middle = t + 0.5f * ds;
     result.depth += taken * (r.before + middle);

@@ -3,6 +3,8 @@
 //   MarchParameters params;
 //   vec3 environmentTexel(ivec2 texel);   of the lat-long picture, row 0 at the top
 //   vec4 environmentCell(int cell);       of its table (scene/environment_map.h)
+// Some drivers run the branches that no pixel takes: NPH_MAP and NPH_SHOWN_SKY are true where there may be such a picture, and
+// where the environment may be shown behind the medium.
 
 // As in scene/environment_map.h: cells around, and up; the upper 15 bits of an integer choose one of all.
 NPH_CONST int kSkyCellsAround = 256;
@@ -68,7 +70,7 @@ NPH_FN vec3 mapRadiance(vec3 direction) {
 NPH_FN vec3 environmentRadiance(vec3 direction) {
   int kind = skyKind();
   if (kind == kSkyRamp) return rampRadiance(dot(direction, vec3(params.skyUp)));
-  if (kind == kSkyMap) return mapRadiance(direction);
+  if (NPH_MAP && kind == kSkyMap) return mapRadiance(direction);
   return vec3(params.environment);
 }
 
@@ -97,7 +99,7 @@ NPH_FN vec3 drawFromMap(uint bits, float u1, float u2) {
 // What the picture holds of the environment along the ray at picture position `at`, seen through `opticalDepth`: 0 where the
 // scene does not ask to show it.
 NPH_FN vec3 environmentBehind(vec2 at, vec3 opticalDepth) {
-  if (params.skyForward.w <= 0.0f || skyKind() == kSkyNone) return vec3(0.0f);
+  if (!NPH_SHOWN_SKY || params.skyForward.w <= 0.0f || skyKind() == kSkyNone) return vec3(0.0f);
   vec3 ray = vec3(params.rayCorner) + at.x * vec3(params.rayDx) + at.y * vec3(params.rayDy);
   return exp(-opticalDepth) * environmentRadiance(normalize(ray));
 }

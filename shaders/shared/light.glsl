@@ -11,7 +11,7 @@ NPH_FN vec3 scatteredByOrders(vec3 toLight, vec3 ray, float column) {
   vec3 lobes = vec3(params.phase);
   for (int m = 0; m <= params.counts.y; ++m) {
     float phase = NPH_LOBES ? phaseFunction(toLight, ray, lobes) : phaseHenyeyGreenstein(toLight, ray, lobes.x);
-    sum += scattering * phase * exp(-(extinction * column) * vec3(params.sigmaT));
+    sum += scattering * phase * lessened((extinction * column) * vec3(params.sigmaT));
     extinction *= params.octaves.x;
     scattering *= params.octaves.y;
     lobes.x *= params.octaves.z;
@@ -65,7 +65,7 @@ NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
   float u1 = float(bits >> 8u) * (1.0f / 16777216.0f);
   float u2 = float((hashBits(rotation) + number * 2447445414u) >> 8u) * (1.0f / 16777216.0f);
   uint turn = place + number + hashBits(seed);
-  bool map = skyKind() == kSkyMap;
+  bool map = NPH_MAP && skyKind() == kSkyMap;
   bool byPhase = (turn & 1u) == 0u;
   bool byMap = map && (turn & 2u) != 0u;
   vec3 lobes = vec3(params.phase);

@@ -38,12 +38,13 @@ NPH_FN float lightColumn(int light, vec3 position, vec3 direction, float reach, 
   float column = -log(max(cachedColumn(max(texel, vec3(0.0f))), 6e-8f)) / params.cache.y;
   if (NPH_NEAR) {
     // The steps' ends lie at the squares of even shares of the way.
+    Course course = courseOf(direction);
     float share = 1.0f / max(params.cache.w, 1.0f);
     for (int i = 0; i < int(params.cache.w); ++i) {
       float from = float(i * i) * share * share * way;
       float ds = float(2 * i + 1) * share * share * way;
       float toExit = 0.0f;
-      column += ds * densityAndExit(position + (from + start * ds) * direction, direction, toExit);
+      column += ds * densityAndExit(position + (from + start * ds) * direction, course, toExit);
       cost.x += 1.0f;
     }
   }

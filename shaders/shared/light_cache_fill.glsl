@@ -37,7 +37,7 @@ NPH_FN void skyToCache(vec3 position, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NP
     float g = phaseMeanCosine(vec3(params.phase));
     vec3 radiance = environmentRadiance(toSky);
     for (int m = 0; m <= params.counts.y; ++m) {
-      vec3 light = scattering * radiance * exp(-(extinction * column) * vec3(params.sigmaT));
+      vec3 light = scattering * radiance * lessened((extinction * column) * vec3(params.sigmaT));
       even += light;
       slope += (3.0f * g * dot(light, vec3(1.0f / 3.0f))) * toSky;
       extinction *= params.octaves.x;

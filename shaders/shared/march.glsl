@@ -77,6 +77,7 @@ NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
   float voxel = 1.0f / length(direction);  // world units
   float margin = params.walk.x * voxel;
   float enough = columnThatHides(params.environment.w);
+  Course course = courseOf(direction);
   uint lit = 0u;
   uvec2 word = uvec2(0u);  // of the brick that the ray is in
   vec3 corner = vec3(0.0f);
@@ -97,7 +98,7 @@ NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
       int edge = wordEdge(word);
       corner = cubeCorner(brick, edge);
       size = float(edge);
-      float way = wayOut(position, direction, corner, kBrickEdge * size);
+      float way = wayOut(position, course, corner, kBrickEdge * size);
       tEnd = min(tFar, t + margin + max(0.0f, way));
       float steps = ceil((tEnd - t) / stepIn(word, params.sigmaS.w * size * voxel, max(before.x, max(before.y, before.z))));
       dt = (tEnd - t) / max(steps, 1.0f);
@@ -115,13 +116,13 @@ NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
       result.cost.x += 1.0f;
       checkBound(word, rho, result.cost);
       vec3 x = (rho * dt) * vec3(params.sigmaT);
-      vec3 weight = before * (rho * dt) * stepIntegral(x);
+      result.opticalDepth += x;
+      vec3 left = lessened(result.opticalDepth);
+      vec3 weight = stepWeight(rho * dt, x, before, left);
       vec3 scattering = powderAt(origin + middle * direction, rho) * weight;
       if (NPH_EMISSION) result.radiance += emissionAt(origin + middle * direction) * weight;
       share += scattering;
       place += dot(scattering, vec3(1.0f / 3.0f)) * middle;
-      result.opticalDepth += x;
-      vec3 left = exp(-result.opticalDepth);
       float step = dot(before - left, vec3(1.0f / 3.0f));
       result.depth += step * (r.before + middle);
       taken += step;

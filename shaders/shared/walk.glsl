@@ -41,17 +41,32 @@ NPH_FN bool isOutside(ivec3 brick) {
 // Index-space corner of the aligned cube of `edge` bricks around a brick.
 NPH_FN vec3 cubeCorner(ivec3 brick, int edge) { return vec3(brick - (brick & ivec3(edge - 1))) * kBrickEdge; }
 
-// Way along `direction` from `position` to where it leaves the cube, in multiples of `direction`.
-NPH_FN float wayOut(vec3 position, vec3 direction, vec3 corner, float size) {
-  float way = 1e9f;
+// A direction as wayOut takes it: what does not depend on where it is asked.
+struct Course {
+  vec3 inverse;  // 1 over the direction; 0 along axes that it hardly moves along
+  vec3 ahead;    // 1 along axes where the far face is the upper one
+  vec3 still;    // 1e9 where inverse is 0, else 0
+};
+
+NPH_FN Course courseOf(vec3 direction) {
+  Course course;
   for (int axis = 0; axis < 3; ++axis) {
-    if (abs(direction[axis]) > 1e-9f) {
-      float face = direction[axis] > 0.0f ? corner[axis] + size : corner[axis];
-      way = min(way, (face - position[axis]) / direction[axis]);
-    }
+    bool moves = abs(direction[axis]) > 1e-9f;
+    course.inverse[axis] = moves ? 1.0f / direction[axis] : 0.0f;
+    course.ahead[axis] = direction[axis] > 0.0f ? 1.0f : 0.0f;
+    course.still[axis] = moves ? 0.0f : 1e9f;
   }
-  return way;
+  return course;
 }
+
+// Way along a direction from `position` to where it leaves the cube, in multiples of the direction.
+NPH_FN float wayOut(vec3 position, Course course, vec3 corner, float size) {
+  vec3 way = (corner + size * course.ahead - position) * course.inverse + course.still;
+  return min(way.x, min(way.y, way.z));
+}
+
+// e^(−x) of each channel; NPH_GREY is true where it is known that all have one extinction.
+NPH_FN vec3 lessened(vec3 x) { return NPH_GREY ? vec3(exp(-x.x)) : exp(-x); }
 
 // A debug mode, where NPH_CHECK is 1: what was skipped is read after all, from an index that says of each brick alone where it
 // lies (storedWord, as brickWord), and what was read is held against its brick's bound. cost.z counts the densities that
@@ -77,9 +92,10 @@ NPH_FN void checkBound(uvec2 word, float rho, NPH_INOUT(vec4) cost) {
   cost.w += rho > 1.00001f * wordMaximum(word) ? 1.0f : 0.0f;
 }
 
-// Density at an index-space position. Where it is empty there, `toExit` becomes the number of `stride`s from there to the far
+// Density at an index-space position. Where it is empty there, `toExit` becomes the number of steps of the course's direction
+// from there to the far
 // face of the largest known empty cube, over which all densities are 0; otherwise it is 0.
-NPH_FN float densityAndExit(vec3 position, vec3 stride, NPH_OUT(float) toExit) {
+NPH_FN float densityAndExit(vec3 position, Course course, NPH_OUT(float) toExit) {
   ivec3 brick = ivec3(floor(position / kBrickEdge));
   toExit = 0.0f;
   // Rounding may place an end of the ray a hair outside the box, where the density is 0.
@@ -88,7 +104,7 @@ NPH_FN float densityAndExit(vec3 position, vec3 stride, NPH_OUT(float) toExit) {
   int edge = wordEdge(word);
   vec3 corner = cubeCorner(brick, edge);
   if (!wordIsEmpty(word)) return brickDensity(word, (position - corner) / float(edge));
-  toExit = wayOut(position, stride, corner, kBrickEdge * float(edge));
+  toExit = wayOut(position, course, corner, kBrickEdge * float(edge));
   return 0.0f;
 }
 
@@ -113,6 +129,7 @@ NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enoug
   tFar = min(tFar, reach);
   float dt = steps.x * voxelAt(origin) / length(direction);
   float growth = steps.y;
+  Course course = courseOf(direction);
   float column = 0.0f;
   float t = tNear;
   // Kept apart from the loop's condition, which a compiler may take to be false behind the loop.
@@ -121,7 +138,7 @@ NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enoug
     float ds = min(dt, tFar - t);  // the last step ends where the medium does
     float middle = t + start * ds;
     float toExit = 0.0f;
-    column += densityAndExit(origin + middle * direction, direction, toExit) * ds;
+    column += densityAndExit(origin + middle * direction, course, toExit) * ds;
     cost.x += 1.0f;
     arrived = column > enough ? 1.0f : 0.0f;
     if (column > enough) break;
