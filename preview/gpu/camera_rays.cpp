@@ -122,9 +122,10 @@ void setWalk(shared::MarchParameters& p, const MarchSettings& march, const Brick
   const auto samples = [](double cell) {
     return 1 + std::max(1, static_cast<int>(std::lround(kBlockBricks * kBrickCells / cell)));
   };
-  // Between samples the cache mixes e^(−κ column). With κ below σ_t places just inside a cloud come out too
-  // dark, at σ_t too bright; in between they are right on the mean.
-  constexpr float kMixedBy = 0.8f;
+  // Between samples the cache mixes 1/(1 + κ column), which keeps columns of any depth. With a small κ places
+  // just inside a cloud come out too dark, with a large one too bright; in between they are right on the
+  // mean.
+  constexpr float kMixedBy = 0.5f;
   const float sigmaMax = std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z));
   if (voxelDepth(bricks, double{sigmaMax}) <= march.cacheDepth)
     p.cache = vec4(1.0f, kMixedBy * sigmaMax, static_cast<float>(march.cacheNearVoxels),

@@ -22,7 +22,7 @@ struct SkipCheck {
 SkipCheck takeSkipCheck(const GlBuffer& counts, GLintptr offset);
 
 /// Textures that hold the samples of shaders/shared/light_cache_fill.glsl and say where each block lies.
-/// Columns are kept as e^(−κ column), κ being MarchParameters::cache.y; the sky's samples depend on the
+/// Columns are kept as 1/(1 + κ column), κ being MarchParameters::cache.y; the sky's samples depend on the
 /// medium and its phase function as well.
 class LightCache {
  public:

@@ -2,7 +2,7 @@
 // scatters. Its samples lie on a lattice in blocks of 16³ voxels, kept where a block holds density. Included as walk.glsl is,
 // after it; GLSL's scope or the struct provides
 //   uint blockWord(ivec3 block);               0: not kept. Else 1 + its place in the cache: 10 bits an axis
-//   float cachedColumn(vec3 texel);            trilinear; whole numbers are samples; e^(−params.cache.y · column)
+//   float cachedColumn(vec3 texel);            trilinear; whole numbers are samples; 1/(1 + params.cache.y · column)
 //   vec4 cachedSky(int part, vec3 texel);      the same; 0: radiance scattered alike to all sides. 1: its forward slope
 
 NPH_CONST float kBlockEdge = 16.0f;
@@ -35,7 +35,7 @@ NPH_FN float lightColumn(int light, vec3 position, vec3 direction, float reach, 
   }
   texel.z += float(light * params.cacheShape.z);
   // Below the least half, nothing is seen.
-  float column = -log(max(cachedColumn(max(texel, vec3(0.0f))), 6e-8f)) / params.cache.y;
+  float column = (1.0f / max(cachedColumn(max(texel, vec3(0.0f))), 6e-8f) - 1.0f) / params.cache.y;
   if (NPH_NEAR) {
     // The steps' ends lie at the squares of even shares of the way.
     Course course = courseOf(direction);

@@ -7,10 +7,12 @@ NPH_FN vec3 cachePosition(ivec3 block, ivec3 local, int samples) {
   return vec3(block) * kBlockEdge + vec3(local) * (kBlockEdge / float(samples - 1));
 }
 
-// The whole column from a position to a light, in units of params.cache.y.
+// The whole column from a position to a light, as the cache keeps it.
 NPH_FN float columnToCache(int light, vec3 position, NPH_INOUT(vec4) cost) {
   Lighting l = lightingFrom(light, position);
-  return exp(-params.cache.y * columnDensity(position, l.toLightIndex, l.reach, 17.0f / params.cache.y, vec2(params.cacheSteps), 0.5f, cost));
+  // Far octaves see through columns that hide the first order altogether: none is given up on.
+  float column = columnDensity(position, l.toLightIndex, l.reach, 1e30f, vec2(params.cacheSteps), 0.5f, cost);
+  return 1.0f / (1.0f + params.cache.y * column);
 }
 
 // Directions evenly over the sphere: a Fibonacci spiral.
