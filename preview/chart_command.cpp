@@ -26,6 +26,8 @@ Scene physicalScene(const std::string& path) {
     std::cerr << "chart: the report look has no truth; the physical look is charted\n";
   scene.look = Look::physical;
   scene.powder.on = false;
+  if (scene.stage.on) std::cerr << "chart: the stage has no truth and is left out\n";
+  scene.stage.on = false;
   scene.lightTransmittance = LightTransmittance::marched;
   scene.march.levelPixels = 0.0;  // the small pictures stand for large ones, which resolve every voxel
   return scene;

@@ -100,6 +100,8 @@ int fitCommand(const FitCommandOptions& options) {
   if (!options.dryRun)
     for (const std::string& file : options.files) requireWritable(file);
   Scene scene = options.scene.empty() ? Scene{} : openScene(options.scene, {});
+  if (scene.stage.on) std::cerr << "fit: the stage has no truth and is left out\n";
+  scene.stage.on = false;
   FitOptions fitting;
   fitting.quiet = options.quiet;
   if (scene.octaves.count.value_or(0) > 0) fitting.count = *scene.octaves.count;

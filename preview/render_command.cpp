@@ -165,6 +165,12 @@ class Sequence {
     if (!view_) {
       std::string sentence;
       view_ = resolveScene(scene_, bricks, static_cast<double>(options_.width) / options_.height, sentence);
+      if (scene_.stage.on && row_.name != "march")
+        throw InputError({},
+                         "the stage is drawn by --method march alone; switch it off by stage: { on: false }");
+      if (scene_.stage.on && chooses())
+        throw InputError(
+            {}, "--error needs truth, and the stage has none; switch it off by stage: { on: false }");
       std::cerr << sentence << '\n' << describeLight(*view_) << '\n';
       if (isReference()) tellWhatIsLeftOut();
       method_ = row_.make({options_.filter, options_.vramBytes});

@@ -261,6 +261,47 @@ BackdropColours readBackdrop(const yaml::Node& node, Diagnostics& out) {
   return colours;
 }
 
+/// A number, or `auto` for nothing.
+std::optional<double> readOpen(yaml::MapReader& reader, const std::string& key, const Range& range) {
+  const yaml::NodePtr node = reader.find(key);
+  if (!node || (node->kind == yaml::Kind::scalar && node->scalar == "auto")) return std::nullopt;
+  return reader.number(key, 0.0, range);
+}
+
+StageThing readThing(const yaml::Node& node, const char* name, const char* size, Diagnostics& out) {
+  constexpr Range kSize{0.0, kLargest, true, false};
+  yaml::MapReader reader(node, name, out);
+  StageThing thing;
+  thing.on = reader.boolean("on", true);
+  const yaml::NodePtr center = reader.find("center");
+  if (center && !(center->kind == yaml::Kind::scalar && center->scalar == "auto"))
+    thing.center = vectorOf(reader.vector3("center", {0.0, 0.0, 0.0}, kCoordinate));
+  thing.size = readOpen(reader, size, kSize);
+  reader.finish();
+  return thing;
+}
+
+Stage readStage(const yaml::Node& node, Diagnostics& out) {
+  // Beyond it a penumbra is narrower than a pixel.
+  constexpr Range kEdge{0.0, kLargest, true, false}, kPenumbra{0.0, 1000.0, false, false};
+  yaml::MapReader reader(node, "'stage'", out);
+  Stage stage;
+  stage.on = reader.boolean("on", true);
+  stage.floor = reader.boolean("floor", stage.floor);
+  stage.height = readOpen(reader, "height", kCoordinate);
+  stage.checker = readOpen(reader, "checker", kEdge);
+  if (const auto inner = reader.find("chrome_ball"))
+    stage.chrome = readThing(*inner, "'chrome_ball'", "radius", out);
+  if (const auto inner = reader.find("grey_ball"))
+    stage.grey = readThing(*inner, "'grey_ball'", "radius", out);
+  if (const auto inner = reader.find("chrome_cube"))
+    stage.cube = readThing(*inner, "'chrome_cube'", "edge", out);
+  stage.highlights = reader.boolean("highlights", stage.highlights);
+  stage.penumbra = reader.number("penumbra", stage.penumbra, kPenumbra);
+  reader.finish();
+  return stage;
+}
+
 // Between samples of the light cache: a voxel at least, at most one of its blocks; so far too it is marched
 // before.
 constexpr Range kCacheVoxels{1.0, 16.0, false, false}, kNear{0.0, 16.0, false, false};
@@ -312,6 +353,7 @@ Scene readScene(const yaml::Node& node, Diagnostics& out) {
   if (const auto environment = reader.find("environment"))
     scene.environment = readEnvironment(*environment, out);
   if (const auto backdrop = reader.find("background")) scene.backdrop = readBackdrop(*backdrop, out);
+  if (const auto stage = reader.find("stage")) scene.stage = readStage(*stage, out);
   const std::string look =
       reader.choice("look", nameOf(scene.look), {nameOf(Look::physical), nameOf(Look::report)});
   scene.look = look == nameOf(Look::report) ? Look::report : Look::physical;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/yaml.h"
+#include "scene/stage.h"
 
 namespace nephele {
 
@@ -183,6 +184,7 @@ struct Scene {
   std::vector<Light> lights{Sun{}};
   Environment environment;
   std::optional<BackdropColours> backdrop;  // nullopt: the environment in `report`, the default in `physical`
+  Stage stage;
   Look look = Look::physical;
   MarchSettings march;
   // No key of files; presets set it. Directions of lights are for Z up, and resolveScene (preview/resolve.h)

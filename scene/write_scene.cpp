@@ -111,6 +111,25 @@ std::string textOf(const LatLong& exr, const std::string& folder) {
          ", intensity: " + shortest(exr.intensity) + " }";
 }
 
+std::string textOf(const StageThing& thing, const char* size) {
+  return std::string("{ on: ") + (thing.on ? "true" : "false") +
+         ", center: " + (thing.center ? listOf(*thing.center) : "auto") + ", " + size + ": " +
+         (thing.size ? shortest(*thing.size) : "auto") + " }";
+}
+
+std::string textOf(const Stage& stage) {
+  const auto open = [](const std::optional<double>& value) { return value ? shortest(*value) : "auto"; };
+  return std::string(
+             "# Solid things around the cloud. penumbra: sharpness of their shadows, 0 for hard ones.\n"
+             "stage:\n  on: ") +
+         (stage.on ? "true" : "false") + "\n  floor: " + (stage.floor ? "true" : "false") +
+         "\n  height: " + open(stage.height) + "\n  checker: " + open(stage.checker) +
+         "\n  chrome_ball: " + textOf(stage.chrome, "radius") +
+         "\n  grey_ball: " + textOf(stage.grey, "radius") + "\n  chrome_cube: " + textOf(stage.cube, "edge") +
+         "\n  highlights: " + (stage.highlights ? "true" : "false") +
+         "\n  penumbra: " + shortest(stage.penumbra) + "\n";
+}
+
 std::string textOf(const Environment& environment, const std::string& folder) {
   std::string text =
       "# Radiance from all around: constant, ramp or exr; rotation in degrees.\nenvironment: { ";
@@ -143,6 +162,7 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
   if (scene.backdrop)
     text += "# Behind window and PNG only, linear Rec.709: no light.\nbackground: { bottom: " +
             listOf(scene.backdrop->bottom) + ", top: " + listOf(scene.backdrop->top) + " }\n";
+  if (scene.stage != Stage{}) text += textOf(scene.stage);
   text += "look: " + nameOf(scene.look) + "\n";
   text +=
       "# Steps in voxels; each step towards a light is shadow_growth times the one before. adaptive: longer "

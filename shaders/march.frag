@@ -43,6 +43,10 @@ vec3 emissionAt(vec3 position) { return vec3(0.0); }
 #include "shared/light.glsl"
 #include "shared/march.glsl"
 #include "shared/dda.glsl"
+#if NPH_STAGE
+#include "shared/stage_shapes.glsl"
+#include "shared/stage.glsl"
+#endif
 
 #if NPH_METHOD == 1
 // From the camera through the place on the bounding cube that the raster interpolated.
@@ -55,6 +59,7 @@ Ray rayFromFace() {
   r.before = length(world);
   r.ray = world / r.before;
   r.direction = way / r.before;
+  r.reach = 3.0e38f;
   return r;
 }
 #endif
@@ -72,6 +77,8 @@ void main() {
   MarchResult result = nothingMarched();
 #elif NPH_METHOD == 2
   MarchResult result = walkVoxels(rayThrough(vec2(pixel) + subPixel), random, sampleNumber);
+#elif NPH_STAGE
+  MarchResult result = stageAlong(rayThrough(vec2(pixel) + subPixel), stepStart(jitter, sampleNumber), random, sampleNumber);
 #else
   MarchResult result = marchRay(vec2(pixel) + subPixel, stepStart(jitter, sampleNumber), random, sampleNumber);
 #endif

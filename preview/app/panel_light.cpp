@@ -1,4 +1,4 @@
-// Lights, environment, medium, orders of scattering. Depends on imgui, scene and app/orbit_camera.h.
+// Lights, environment, medium, orders of scattering, stage. Depends on imgui, scene and app/orbit_camera.h.
 #include <imgui.h>
 
 #include <algorithm>
@@ -204,6 +204,55 @@ bool termWidgets(Scene& scene, const Medium& medium) {
   return changed;
 }
 
+bool thingWidgets(const char* label, StageThing& thing, const char* size) {
+  constexpr double kSpeed = 0.01, kFirstSize = 0.3;  // world units a pixel; where the cloud has chosen so far
+  ImGui::PushID(label);
+  bool changed = ImGui::Checkbox(label, &thing.on);
+  bool placed = thing.center.has_value();
+  if (thing.on && ImGui::Checkbox("placed", &placed)) {
+    thing.center = placed ? std::optional<glm::dvec3>(glm::dvec3(0.0)) : std::nullopt;
+    changed = true;
+  }
+  if (thing.on && thing.center) changed |= widgets::position("center", *thing.center, kSpeed);
+  bool sized = thing.size.has_value();
+  if (thing.on && ImGui::Checkbox("sized", &sized)) {
+    thing.size = sized ? std::optional<double>(kFirstSize) : std::nullopt;
+    changed = true;
+  }
+  if (thing.on && thing.size) changed |= widgets::slider(size, *thing.size, 1e-3, 1e3, "%.3g", true);
+  ImGui::PopID();
+  return changed;
+}
+
+/// An open value: a checkbox for whether it is given, and where it is, the number.
+bool openWidget(const char* label, std::optional<double>& value, double first, double low, double high,
+                bool logarithmic) {
+  bool given = value.has_value();
+  ImGui::PushID(label);
+  bool changed = ImGui::Checkbox(label, &given);
+  if (changed) value = given ? std::optional<double>(first) : std::nullopt;
+  if (value) changed |= widgets::slider("##value", *value, low, high, "%.3g", logarithmic);
+  ImGui::PopID();
+  return changed;
+}
+
+bool stageWidgets(Stage& stage) {
+  bool changed = ImGui::Checkbox("stage", &stage.on);
+  if (!stage.on) return changed;
+  constexpr double kHigh = 1e3, kSmall = 1e-3, kFirstEdge = 0.5, kSharpest = 64.0;
+  changed |= ImGui::Checkbox("floor", &stage.floor);
+  if (stage.floor) {
+    changed |= openWidget("height given", stage.height, 0.0, -kHigh, kHigh, false);
+    changed |= openWidget("squares given", stage.checker, kFirstEdge, kSmall, kHigh, true);
+  }
+  changed |= thingWidgets("chrome ball", stage.chrome, "radius");
+  changed |= thingWidgets("grey ball", stage.grey, "radius");
+  changed |= thingWidgets("chrome cube", stage.cube, "edge");
+  changed |= ImGui::Checkbox("highlights", &stage.highlights);
+  changed |= widgets::slider("shadow sharpness", stage.penumbra, 0.0, kSharpest, "%.1f");
+  return changed;
+}
+
 bool presetWidgets(Scene& scene, const glm::dvec3& up) {
   bool changed = false;
   for (const Preset& preset : presets()) {
@@ -227,6 +276,7 @@ void lightParts(UiState& state, UiWishes& wishes) {
   widgets::group("Environment", false, [&] { changed |= environmentWidgets(scene.environment); });
   widgets::group("Medium", false, [&] { changed |= mediumWidgets(state.settings.medium); });
   widgets::group("Light in the cloud", false, [&] { changed |= termWidgets(scene, state.settings.medium); });
+  widgets::group("Stage", false, [&] { changed |= stageWidgets(scene.stage); });
   wishes.settings |= changed;
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "preview/gpu/light_parameters.h"
+#include "preview/gpu/stage_parameters.h"
 
 #include <cmath>
 #include <glm/matrix.hpp>
@@ -181,6 +182,7 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   p.sigmaS.w = static_cast<float>(scene.march.stepVoxels);
   p.environment.w = static_cast<float>(scene.march.giveUp);
   setLightParameters(p, view, bricks, frame);
+  setStage(p, view, bricks, frame);
   // Products with steps and coefficients must stay floats, and columns below the march's own infinity.
   constexpr double kLargestDensity = 1e15;
   if (bricks.maximum > kLargestDensity)

@@ -42,10 +42,11 @@ bool sameColumns(const MarchParameters& a, const MarchParameters& b, size_t ligh
          same(a.cacheSteps, b.cacheSteps) && same(a.cache.x, b.cache.x) && same(a.cache.y, b.cache.y);
 }
 
-/// Everything but the camera, the lights, the view's steps and the seed.
+/// Everything but the camera, the lights, the view's steps, the seed and the stage.
 bool sameSky(MarchParameters a, MarchParameters b) {
   for (MarchParameters* p : {&a, &b}) {
     std::memset(static_cast<void*>(p), 0, offsetof(MarchParameters, worldFromIndexX));
+    std::memset(static_cast<void*>(&p->stage), 0, sizeof *p - offsetof(MarchParameters, stage));
     std::memset(static_cast<void*>(p->lights), 0, sizeof p->lights);
     p->sigmaS.w = p->environment.w = 0.0f;
     p->shadow = p->walk = p->cache = glm::vec4(0.0f);

@@ -40,6 +40,7 @@ std::vector<std::string> definesFor(Filter filter, MarchWrites writes, int metho
           flag("NPH_LEVELS", p.cacheShape.w != 0),
           flag("NPH_MAP", static_cast<int>(p.skyUp.w) == shared::kSkyMap),
           flag("NPH_SHOWN_SKY", p.skyForward.w > 0.0f),
+          p.stage.x > 0.0f ? "NPH_STAGE 1" : "NPH_STAGE 0",
           p.emission.x > 0.0f ? "NPH_HEAT 1" : "NPH_HEAT 0",
           "NPH_SKY " + std::to_string(sky)};
 }

@@ -72,6 +72,9 @@ struct March {
 #include "shaders/shared/walk.glsl"
 // After the march, whose types it takes.
 #include "shaders/shared/dda.glsl"
+#include "shaders/shared/stage_shapes.glsl"
+// After its shapes.
+#include "shaders/shared/stage.glsl"
 #undef NPH_CACHED
 #undef NPH_EMISSION
 #undef NPH_CHECK

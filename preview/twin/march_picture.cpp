@@ -131,7 +131,7 @@ std::vector<TwinPixel> marchPicture(const BrickLayout& layout, const BrickLayout
                                     const MarchParameters& parameters, int width, int height,
                                     glm::vec2 subPixel, unsigned number, const SkyArrays& sky) {
   std::vector<TwinPixel> pixels(static_cast<size_t>(width) * static_cast<size_t>(height));
-  if (layout.words.empty() && parameters.skyForward.w <= 0.0f) return pixels;
+  if (layout.words.empty() && parameters.skyForward.w <= 0.0f && parameters.stage.x <= 0.0f) return pixels;
   ArraySource source{&layout, heat, atlasOf(layout), heat != nullptr ? atlasOf(*heat) : Volume<float>{},
                      {},      {}};
   March<ArraySource> whole{parameters, &source, sky};
@@ -147,7 +147,9 @@ std::vector<TwinPixel> marchPicture(const BrickLayout& layout, const BrickLayout
                                         static_cast<uint>(parameters.brickCount.w));
         const float start = march.stepStart(
             jitter[static_cast<size_t>(y % kJitterTile * kJitterTile + x % kJitterTile)], number);
-        const auto result = march.marchRay(at, start, random, number);
+        const auto result = parameters.stage.x > 0.0f
+                                ? march.stageAlong(march.rayThrough(at), start, random, number)
+                                : march.marchRay(at, start, random, number);
         TwinPixel& pixel =
             pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
         pixel = {result.radiance + march.environmentBehind(at, result.opticalDepth),

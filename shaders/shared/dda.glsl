@@ -11,6 +11,7 @@ NPH_FN MarchResult walkVoxels(Ray r, uint random, uint number) {
   float tNear = 0.0f;
   float tFar = 0.0f;
   if (!intersectBox(origin, direction, vec3(params.boxMin) + vec3(1.0f), vec3(params.boxMax), tNear, tFar)) return result;
+  tFar = min(tFar, r.reach);
   float margin = params.walk.x / length(direction);
   float enough = columnThatHides(params.environment.w);
   Course course = courseOf(direction);

@@ -30,7 +30,7 @@ static_assert(sizeof(vec4) == kRowBytes && sizeof(ivec4) == kRowBytes);
 static_assert(sizeof(LightParameters) == kRowsPerLight * kRowBytes);
 static_assert(offsetof(MarchParameters, counts) == 38 * kRowBytes);
 static_assert(offsetof(MarchParameters, lights) == kRowsBeforeLights * kRowBytes);
-inline constexpr size_t kRowsBehindLights = 5 + kBlackbodyNodes;
+inline constexpr size_t kRowsBehindLights = 5 + kBlackbodyNodes + 7;
 static_assert(sizeof(MarchParameters) ==
               (kRowsBeforeLights + kRowsPerLight * kMaxLights + kRowsBehindLights) * kRowBytes);
 

@@ -51,6 +51,7 @@ struct Ray {
   vec3 direction;  // voxels per world unit along the ray
   vec3 ray;        // the same, unit and in world axes
   float before;    // world distance from the camera to `origin`
+  float reach;     // world distance from `origin` beyond which nothing is seen
 };
 
 // The ray through picture position `at`, pixels from the top left corner.
@@ -62,6 +63,7 @@ NPH_FN Ray rayThrough(vec2 at) {
   r.origin = vec3(params.originCorner) + at.x * vec3(params.originDx) + at.y * vec3(params.originDy);
   r.direction = (vec3(params.directionCorner) + at.x * vec3(params.directionDx) + at.y * vec3(params.directionDy)) / stretch;
   r.before = params.originCorner.w * stretch;
+  r.reach = 3.0e38f;
   return r;
 }
 
@@ -74,6 +76,7 @@ NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
   float tNear = 0.0f;
   float tFar = 0.0f;
   if (!intersectBox(origin, direction, vec3(params.boxMin), vec3(params.boxMax), tNear, tFar)) return result;
+  tFar = min(tFar, r.reach);
   float voxel = 1.0f / length(direction);  // world units
   float margin = params.walk.x * voxel;
   float enough = columnThatHides(params.environment.w);

@@ -72,4 +72,13 @@ struct MarchParameters {
   vec4 heatZ;
   ivec4 heatCount; // bricks of that grid along each axis
   vec4 blackbody[kBlackbodyNodes];  // what Planck's law at 610 nm leaves of Rec.709 radiance: see emission.glsl
+  // The stage's places are in world axes and units from the brick grid's corner: see stage_shapes.glsl.
+  vec4 stage;        // x: radius of the ball about the floor's centre that holds all, 0: no stage. y: sharpness of shadows, 0:
+                     // hard. z: 1 with highlights. w: half the cloud's longest side
+  vec4 stageFloor;   // centre of its upper side. w: its radius, 0: no floor
+  vec4 stageUp;      // unit. w: edge of a square
+  vec4 stageAcross;  // unit, level
+  vec4 stageChrome;  // centre. w: radius, 0: none; so the next
+  vec4 stageGrey;
+  vec4 stageCube;    // w: half an edge
 };

@@ -135,6 +135,9 @@ TEST(Scene, WrittenAndReadIsTheSame) {
         "emission: { scale: 0.3, grid: 'a \"b\" \\c' }\noctaves: { count: auto, b: 0.1 }\n",
         "environment: { ramp: { ground: 0.1, cloudiness: 0.3, intensity: 0.7 }, show: true }\n",
         "environment: { exr: { path: 'a: b.exr', rotation: 77.7, intensity: 2 } }\n",
+        "stage: { floor: false, height: -0.3, checker: auto, penumbra: 0 }\n",
+        "stage: { on: false, chrome_ball: { on: false }, grey_ball: { center: [1, 2, 3], radius: 0.1 },\n"
+        "  chrome_cube: { center: auto, edge: 2 }, highlights: false, height: auto, checker: 0.1 }\n",
         "camera: { position: [0.1, -1e-9, 1e9], up: [1, 1, 0], fov: 77.7 }\nmedium: { sigma_s: 0.3, g: 0.999 "
         "}\n"
         "octaves: { count: 2, a: 0.3 }\n"
@@ -208,6 +211,9 @@ TEST(Scene, Refusals) {
       {"emission: { grid: '' }", "s:1:13: error: 'grid' names no grid"},
       {"octaves: { count: many }", "s:1:19: error: 'count' must be a whole number, found 'many'"},
       {"environment: { show: 1 }", "s:1:22: error: 'show' must be true or false, found '1'"},
+      {"stage: { checker: 0 }", "s:1:19: error: 'checker' must be greater than 0 and at most 1e+15, found 0"},
+      {"stage: { grey_ball: { edge: 1 } }",
+       "s:1:23: error: unknown key 'edge' in 'grey_ball'"},
       {"look: pretty", "s:1:7: error: 'look' must be one of physical, report, found 'pretty'"},
       {"march: { step: 0 }", "s:1:16: error: 'step' must be 0.01 to 100, found 0"}};
   for (const auto& [text, sentence] : cases) EXPECT_EQ(complaintOf(text), sentence) << text;

@@ -17,8 +17,8 @@ constexpr unsigned kNumber = 3;
 
 /// What lights the cloud: `plain`: marched light under a uniform sky; `report`: all terms of that look under
 /// a ramp; `map`: light by the chord under a lat-long picture that is shown; `cached`, `cachedRamp`: light
-/// from the cache under a uniform sky and under a ramp.
-enum class Lit { plain, report, map, cached, cachedRamp };
+/// from the cache under a uniform sky and under a ramp; `stage`: a cloud among floor, balls and cube.
+enum class Lit { plain, report, map, cached, cachedRamp, stage };
 
 std::shared_ptr<const EnvironmentMap> someMap() {
   constexpr int kColumns = 24, kRows = 12;
@@ -75,14 +75,19 @@ struct ParityCase {
       view.environmentMap = someMap();
     }
     view.scene.march.lightCache = lit == Lit::cached || lit == Lit::cachedRamp;
+    if (lit == Lit::stage) {
+      view.scene.stage.on = view.scene.stage.cube.on = true;
+      view.camera.position = centre + glm::dvec3(1.5, -8.5, 2.5);
+    }
     if (lit == Lit::cachedRamp) environment.kind = Environment::Kind::ramp;
     parameters = marchParameters(view, bricks, kWidth, kHeight, 7, true);
   }
 };
 
 const ParityCase& parityCase(Lit lit) {
-  static const ParityCase cases[] = {ParityCase(Lit::plain), ParityCase(Lit::report), ParityCase(Lit::map),
-                                     ParityCase(Lit::cached), ParityCase(Lit::cachedRamp)};
+  static const ParityCase cases[] = {ParityCase(Lit::plain),      ParityCase(Lit::report),
+                                     ParityCase(Lit::map),        ParityCase(Lit::cached),
+                                     ParityCase(Lit::cachedRamp), ParityCase(Lit::stage)};
   return cases[static_cast<size_t>(lit)];
 }
 
@@ -95,9 +100,9 @@ std::vector<TwinPixel> marchOnCpu(const ParityCase& on, unsigned number, Texel t
 
 const std::vector<TwinPixel>& twinPicture(Lit lit) {
   static const std::vector<TwinPixel> pictures[] = {
-      marchOnCpu(parityCase(Lit::plain), kNumber), marchOnCpu(parityCase(Lit::report), kNumber),
-      marchOnCpu(parityCase(Lit::map), kNumber), marchOnCpu(parityCase(Lit::cached), kNumber),
-      marchOnCpu(parityCase(Lit::cachedRamp), kNumber)};
+      marchOnCpu(parityCase(Lit::plain), kNumber),      marchOnCpu(parityCase(Lit::report), kNumber),
+      marchOnCpu(parityCase(Lit::map), kNumber),        marchOnCpu(parityCase(Lit::cached), kNumber),
+      marchOnCpu(parityCase(Lit::cachedRamp), kNumber), marchOnCpu(parityCase(Lit::stage), kNumber)};
   return pictures[static_cast<size_t>(lit)];
 }
 
@@ -142,7 +147,7 @@ ParityError parityOf(Lit lit, const std::vector<TextChange>& changes, Texel texe
 }
 
 TEST(GlParity, CpuAndGpuAgree) {
-  for (Lit lit : {Lit::plain, Lit::report, Lit::map, Lit::cached, Lit::cachedRamp}) {
+  for (Lit lit : {Lit::plain, Lit::report, Lit::map, Lit::cached, Lit::cachedRamp, Lit::stage}) {
     const ParityError error = parityOf(lit, {});
     std::printf("parity, light %d: p99 of radiance %.3g, of transmittance %.3g\n", static_cast<int>(lit),
                 error.radiance, error.transmittance);
@@ -203,6 +208,7 @@ TEST(GlParity, EachMutantBreaksTheGate) {
   const char* powder = "shared/powder.glsl";
   const char* sky = "shared/environment.glsl";
   const char* cache = "shared/light_cache.glsl";
+  const char* stage = "shared/stage.glsl";
   const char* fill = "shared/light_cache_fill.glsl";
   const struct {
     const char* name;
@@ -290,6 +296,17 @@ TEST(GlParity, EachMutantBreaksTheGate) {
       {"one direction of the cached sky left out",
        {fill, "for (int i = 0; i < kSkyDirections", "for (int i = 1; i < kSkyDirections"},
        Lit::cached},
+      {"mirrors reflect 0.1% more", {stage, "left *= s.mirror", "left *= 1.001f * s.mirror"}, Lit::stage},
+      {"no shadow of the cloud on the stage",
+       {stage, "lessened(column * vec3(params.sigmaT))", "vec3(1.0f)"},
+       Lit::stage},
+      {"the stage not hidden by the cloud",
+       {stage, "left *= lessened(m.opticalDepth)", "left *= 1.0f"},
+       Lit::stage},
+      {"highlights half as wide", {stage, "s.shininess = 40.0f", "s.shininess = 80.0f"}, Lit::stage},
+      {"squares 1% larger",
+       {stage, "float edge = params.stageUp.w", "float edge = 1.01f * params.stageUp.w"},
+       Lit::stage},
   };
   for (const auto& mutant : mutants) {
     const ParityError error = parityOf(mutant.lit, {mutant.change});
