@@ -165,18 +165,31 @@ MarchParameters LightCache::knownAfter(const MarchParameters& parameters) const 
   return known;
 }
 
-bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& parameters, double seconds) {
-  const bool otherVolume = atlasSerial_ != atlas.serial();
-  if (otherVolume || !known_ || !sameShape(*known_, parameters)) {
+bool LightCache::plan(const BrickAtlas& atlas, const MarchParameters& parameters) {
+  const bool anew = atlasSerial_ != atlas.serial() || !known_ || !sameShape(*known_, parameters);
+  if (anew) {
     tasks_.clear();
     known_.reset();
     shape(atlas, parameters);
     atlasSerial_ = atlas.serial();
-    seconds = std::numeric_limits<double>::infinity();  // it holds nothing that could be shown meanwhile
   }
   findTasks(parameters, std::exchange(atlasContents_, atlas.contents()) != atlas.contents());
   if (blockTotal_ == 0) tasks_.clear();
   known_ = knownAfter(parameters);
+  return anew;
+}
+
+void LightCache::begin(const BrickAtlas& atlas, const MarchParameters& parameters) {
+  bare_ = plan(atlas, parameters) || bare_;
+  if (tasks_.empty()) return;
+  fill(atlas, tasks_.front(), 1);
+  finishGl("compiling the light cache");
+  if (tasks_.front().left == 0) tasks_.erase(tasks_.begin());
+}
+
+bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& parameters, double seconds) {
+  bare_ = plan(atlas, parameters) || bare_;
+  if (bare_) seconds = std::numeric_limits<double>::infinity();  // nothing could be shown meanwhile
   const auto start = Clock::now();
   while (!tasks_.empty()) {
     Task& task = tasks_.front();
@@ -190,6 +203,7 @@ bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& paramete
     if (task.left == 0) tasks_.erase(tasks_.begin());
     if (secondsSince(start) >= seconds) break;
   }
+  bare_ = bare_ && !tasks_.empty();
   return tasks_.empty();
 }
 

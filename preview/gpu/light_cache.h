@@ -35,6 +35,9 @@ class LightCache {
   /// not yet keeps what it held.
   bool update(const BrickAtlas& atlas, const shared::MarchParameters& parameters, double seconds);
 
+  /// As update, but for one block alone: so that the driver has compiled what fills it.
+  void begin(const BrickAtlas& atlas, const shared::MarchParameters& parameters);
+
   /// What a block takes under these parameters.
   static uint64_t blockBytes(Filter filter, const shared::MarchParameters& parameters);
   /// Binds to texture units 2, 3 and 5.
@@ -53,6 +56,8 @@ class LightCache {
   };
 
   void shape(const BrickAtlas& atlas, const shared::MarchParameters& parameters);
+  /// Finds what differs from the last time; true where all it held is forgotten.
+  bool plan(const BrickAtlas& atlas, const shared::MarchParameters& parameters);
   shared::MarchParameters knownAfter(const shared::MarchParameters& parameters) const;
   void findTasks(const shared::MarchParameters& parameters, bool otherContents);
   void fill(const BrickAtlas& atlas, Task& task, uint32_t blocks);
@@ -66,6 +71,7 @@ class LightCache {
   GlTexture blockIndex_, columns_, sky_;
   GlBuffer blocks_, cost_;
   uint32_t blockTotal_ = 0;
+  bool bare_ = false;  // it holds nothing yet that could be shown
   uint64_t gpuBytes_ = 0;
   uint64_t atlasSerial_ = 0, atlasContents_ = 0;
   std::optional<shared::MarchParameters> known_;

@@ -49,13 +49,11 @@ void takeEvery(int stride, shared::MarchParameters& p) {
 class MarchMethod : public Method {
  public:
   MarchMethod(const MethodOptions& options, MarchKind kind) : kind_(kind) {
-    auto start = Clock::now();
+    const auto start = Clock::now();
     context_.emplace();
     secondsDriver = secondsSince(start);
-    start = Clock::now();
     pass_.emplace(options.filter, std::vector<TextChange>{}, MarchWrites::radiance, kind);
     limits_.bytes = options.vramBytes;
-    secondsShaders = secondsSince(start);
     renderer = glRenderer();
   }
 
@@ -67,20 +65,23 @@ class MarchMethod : public Method {
 
   Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
     NEPHELE_CHECK_EQ(volume_.has_value(), true);
-    const auto start = Clock::now();
+    auto start = Clock::now();
     const BrickAtlas& atlas = atlasFor(view, request);
     const int width = strided(request.width, request.stride),
               height = strided(request.height, request.stride);
-    const Film film(width, height);
     shared::MarchParameters parameters = marchParameters(view, *bricks_, atlas.layout().frame, request.width,
                                                          request.height, request.seed, true);
     takeEvery(request.stride, parameters);
     pass_->setParameters(parameters);
     pass_->setEnvironment(view.environmentMap);
+    const double secondsUploading = secondsSince(start);
+    secondsShaders += pass_->compile(atlas);
+    start = Clock::now();
+    const Film film(width, height);
     pass_->prepare(atlas, std::numeric_limits<double>::infinity());
     const double cacheDensities = pass_->takeCacheDensities();
     SkipCheck skips = pass_->takeSkipCheck();
-    cost.millisecondsPreparing = secondsSince(start) * 1e3;
+    cost.millisecondsPreparing = (secondsUploading + secondsSince(start)) * 1e3;
     Accumulator accumulator(width, height, request.samples, request.seed,
                             1.0f / static_cast<float>(request.stride));
     {
@@ -96,7 +97,7 @@ class MarchMethod : public Method {
     }
     FilmPicture result = film.read();
     refuseCutRays(result);
-    cost.milliseconds = secondsSince(start) * 1e3;
+    cost.milliseconds = (secondsUploading + secondsSince(start)) * 1e3;
     cost.densitySamplesPerPixel =
         (result.densitySamples + cacheDensities) / (static_cast<double>(width) * height);
     cost.gpuBytes = volume_->gpuBytes() + film.gpuBytes() + pass_->gpuBytes();

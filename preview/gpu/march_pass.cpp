@@ -2,6 +2,7 @@
 #include "preview/gpu/march_pass.h"
 
 #include <array>
+#include <chrono>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -79,7 +80,6 @@ MarchPass::MarchPass(Filter filter, const std::vector<TextChange>& changes, Marc
   const std::array<uint32_t, 2> zeros{};
   glNamedBufferStorage(skips_.name(), sizeof zeros, zeros.data(), GL_DYNAMIC_STORAGE_BIT);
   checkGl("making the parameter buffer");
-  program(static_cast<int>(kind_));
 }
 
 const GlProgram& MarchPass::program(int method) {
@@ -96,16 +96,32 @@ void MarchPass::setParameters(const shared::MarchParameters& parameters) {
   preparedFor_ = 0;
 }
 
-bool MarchPass::prepare(const BrickAtlas& atlas, double seconds) {
+LightCache* MarchPass::uploadParameters(const BrickAtlas& atlas) {
   shared::describeLayout(parameters_, atlas.layout());
   glNamedBufferSubData(buffer_.name(), 0, sizeof parameters_, &parameters_);
   glBindBufferBase(GL_UNIFORM_BUFFER, kParameterBinding, buffer_.name());
   preparedFor_ = atlas.serial();
-  if (writes_ != MarchWrites::radiance || !wantsCache(parameters_)) return true;
+  if (writes_ != MarchWrites::radiance || !wantsCache(parameters_)) return nullptr;
   std::optional<LightCache>& cache = caches_[which_];
   if (!cache) cache.emplace(filter_, changes_);
   sky_.bind();
-  return cache->update(atlas, parameters_, seconds);
+  return &*cache;
+}
+
+bool MarchPass::prepare(const BrickAtlas& atlas, double seconds) {
+  LightCache* cache = uploadParameters(atlas);
+  return cache == nullptr || cache->update(atlas, parameters_, seconds);
+}
+
+double MarchPass::compile(const BrickAtlas& atlas) {
+  const auto start = std::chrono::steady_clock::now();
+  if (LightCache* cache = uploadParameters(atlas)) cache->begin(atlas, parameters_);
+  // Some drivers compile what a draw needs at the draw.
+  const Film pixel(1, 1);
+  draw(atlas, pixel, glm::vec2(0.5f, 0.5f), 0, {0, 0, 1, 1});
+  finishGl("compiling the march");
+  preparedFor_ = 0;  // the light cache is not filled yet
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void MarchPass::useCache(size_t which) {

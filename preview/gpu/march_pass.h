@@ -31,7 +31,7 @@ enum class MarchKind { march, cube, dda };
 /// The compiled march with its parameters and, where they ask for it, its light cache.
 class MarchPass {
  public:
-  /// Compiles for one filter; `changes` are for tests. Throws WorldError where the driver refuses.
+  /// For one filter; `changes` are for tests. Programs are built when first drawn with.
   explicit MarchPass(Filter filter, const std::vector<TextChange>& changes = {},
                      MarchWrites writes = MarchWrites::radiance, MarchKind kind = MarchKind::march);
 
@@ -47,6 +47,10 @@ class MarchPass {
   /// Fills what the light cache lacks for these parameters and this volume, for about `seconds`; returns
   /// whether it lacks nothing more. Until then draws take what the cache held before.
   bool prepare(const BrickAtlas& atlas, double seconds);
+  /// Builds all programs that draws with these parameters need, those that the driver leaves until they run
+  /// among them; returns the seconds that took. Draws do it themselves where this was not called. Throws
+  /// WorldError where the driver refuses.
+  double compile(const BrickAtlas& atlas);
   /// Which of the light caches is meant from now on: pictures under two settings, drawn by turns, need one
   /// each.
   void useCache(size_t which);
@@ -65,6 +69,8 @@ class MarchPass {
 
  private:
   const GlProgram& program(int method);
+  /// Parameters to the GPU, and the light cache where they ask for one.
+  LightCache* uploadParameters(const BrickAtlas& atlas);
 
   Filter filter_;
   MarchWrites writes_;

@@ -29,8 +29,9 @@ TEST(GlShader, ParameterOffsetsAreTheDrivers) {
   needContext();
   const GlProgram program =
       buildProgram("screen.vert", "march.frag",
-                   {"NPH_FILTER_EXACT 1", "NPH_METHOD 0", "NPH_STAGE 0", "NPH_GREY false", "NPH_MAP true", "NPH_SHOWN_SKY true", "NPH_CACHED true", "NPH_SKY 2", "NPH_NEAR true",
-                    "NPH_POINTS true", "NPH_POWDER true", "NPH_LOBES true"});
+                   {"NPH_FILTER_EXACT 1", "NPH_METHOD 0", "NPH_STAGE 0", "NPH_GREY false", "NPH_MAP true",
+                    "NPH_SHOWN_SKY true", "NPH_CACHED true", "NPH_SKY 2", "NPH_NEAR true", "NPH_POINTS true",
+                    "NPH_POWDER true", "NPH_LOBES true"});
 #define OFFSET(member) \
   { #member, offsetof(MarchParameters, member) }
   const struct {
@@ -45,7 +46,9 @@ TEST(GlShader, ParameterOffsetsAreTheDrivers) {
       OFFSET(shadow),          OFFSET(phase),           OFFSET(powder),          OFFSET(height),
       OFFSET(chordCentre),     OFFSET(chordRadii),      OFFSET(environment),     OFFSET(skyHorizon),
       OFFSET(skyGround),       OFFSET(skyUp),           OFFSET(skyRight),        OFFSET(skyForward),
-      OFFSET(skySize),         OFFSET(counts),          OFFSET(brickCount)};
+      OFFSET(skySize),         OFFSET(counts),          OFFSET(brickCount),      OFFSET(emission),
+      OFFSET(heatCount),       OFFSET(stage),           OFFSET(stageFloor),      OFFSET(stageUp),
+      OFFSET(stageAcross),     OFFSET(stageChrome),     OFFSET(stageGrey),       OFFSET(stageCube)};
 #undef OFFSET
   for (const auto& member : members)
     EXPECT_EQ(driverOffset(program, std::string("params.") + member.name), static_cast<GLint>(member.offset))
@@ -66,8 +69,14 @@ TEST(GlShader, ParameterOffsetsAreTheDrivers) {
 
 TEST(GlShader, ErrorsNameFileAndLine) {
   needContext();
+  const BrickVolume bricks =
+      volumeOf(glm::ivec3(2), glm::ivec3(0), glm::dmat4(1.0), [](const glm::dvec3&) { return 1.0; });
+  MarchPass pass(Filter::exact, {{"shared/phase.glsl", "return 0.25f / kPi;", "return notDeclared;"}});
+  ViewedScene view;
+  view.scene.march.lightCache = false;
+  pass.setParameters(marchParameters(view, bricks, 1, 1, 0, false));
   try {
-    MarchPass pass(Filter::exact, {{"shared/phase.glsl", "return 0.25f / kPi;", "return notDeclared;"}});
+    marchOnGpu(pass, bricks, 1, 1, {0.5f, 0.5f}, 0);
     FAIL() << "a broken shader compiled";
   } catch (const WorldError& error) {
     EXPECT_NE(std::string(error.what()).find("shared/phase.glsl:8:"), std::string::npos) << error.what();
