@@ -77,6 +77,7 @@ struct ParityCase {
     view.scene.march.lightCache = lit == Lit::cached || lit == Lit::cachedRamp;
     if (lit == Lit::stage) {
       view.scene.stage.on = view.scene.stage.cube.on = true;
+      view.scene.stage.penumbra = 2.0;
       view.camera.position = centre + glm::dvec3(1.5, -8.5, 2.5);
     }
     if (lit == Lit::cachedRamp) environment.kind = Environment::Kind::ramp;
@@ -296,6 +297,9 @@ TEST(GlParity, EachMutantBreaksTheGate) {
       {"one direction of the cached sky left out",
        {fill, "for (int i = 0; i < kSkyDirections", "for (int i = 1; i < kSkyDirections"},
        Lit::cached},
+      {"penumbra 10% sharper",
+       {"shared/stage_shapes.glsl", "sharpness * d / t", "1.1f * sharpness * d / t"},
+       Lit::stage},
       {"mirrors reflect 0.1% more", {stage, "left *= s.mirror", "left *= 1.001f * s.mirror"}, Lit::stage},
       {"no shadow of the cloud on the stage",
        {stage, "lessened(column * vec3(params.sigmaT))", "vec3(1.0f)"},
