@@ -77,13 +77,13 @@ vec4 cacheFetch(sampler3D cache, vec3 texel) {
 }
 #endif
 
-float brickDensity(uvec2 word, vec3 position) {
-  return brickValue(atlas, word, position) * (NPH_SCALED ? wordMaximum(word) : 1.0);
-}
+float wordScale(uvec2 word) { return NPH_SCALED ? wordMaximum(word) : 1.0; }
+
+float brickDensity(uvec2 word, vec3 position) { return brickValue(atlas, word, position) * wordScale(word); }
 
 float brickSample(uvec2 word, ivec3 place) {
   ivec3 kept = ivec3(keptPosition(word, vec3(place)));
-  return texelFetch(atlas, wordCorner(word) + kept, 0).r * (NPH_SCALED ? wordMaximum(word) : 1.0);
+  return texelFetch(atlas, wordCorner(word) + kept, 0).r * wordScale(word);
 }
 
 float cachedColumn(vec3 texel) { return cacheFetch(columnCache, texel).r; }
