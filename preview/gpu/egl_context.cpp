@@ -4,6 +4,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -68,8 +69,13 @@ EGLContext contextOn(EGLDisplay display, std::string& why) {
     eglDestroyContext(display, context);
     context = EGL_NO_CONTEXT;
   }
-  if (context == EGL_NO_CONTEXT) eglTerminate(display);
   return context;
+}
+
+/// Contexts that live on each display, which ends with the last.
+std::map<EGLDisplay, int>& contextsOf() {
+  static std::map<EGLDisplay, int> contexts;
+  return contexts;
 }
 
 }  // namespace
@@ -78,7 +84,11 @@ EglContext::EglContext() {
   std::string why = "EGL offers neither the surfaceless nor the device platform";
   for (EGLDisplay display : candidateDisplays()) {
     EGLContext context = contextOn(display, why);
-    if (context == EGL_NO_CONTEXT) continue;
+    if (context == EGL_NO_CONTEXT) {
+      if (display != EGL_NO_DISPLAY && contextsOf()[display] == 0) eglTerminate(display);
+      continue;
+    }
+    ++contextsOf()[display];
     display_ = display;
     context_ = context;
     loadGl(reinterpret_cast<GLADloadfunc>(eglGetProcAddress));
@@ -89,9 +99,15 @@ EglContext::EglContext() {
 
 EglContext::~EglContext() {
   if (context_ == nullptr) return;
-  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  if (eglGetCurrentContext() == context_)
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
-  eglTerminate(display_);
+  if (--contextsOf()[display_] == 0) eglTerminate(display_);
+}
+
+bool EglContext::makeCurrent() const noexcept {
+  return eglGetCurrentContext() == context_ ||
+         eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE;
 }
 
 }  // namespace nephele

@@ -5,12 +5,16 @@ namespace nephele {
 
 /// Makes an OpenGL 4.5 core context current on this thread: Mesa's surfaceless platform, else the first EGL
 /// device that has one. Throws WorldError naming the call that failed. The context goes with the object.
+/// There may be several; what GL makes belongs to the one that is current. All of them are of one thread.
 class EglContext {
  public:
   EglContext();
   ~EglContext();
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
+
+  /// For after another one was made, or went; false where EGL refuses.
+  bool makeCurrent() const noexcept;
 
  private:
   void* display_ = nullptr;

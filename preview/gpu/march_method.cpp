@@ -57,7 +57,11 @@ class MarchMethod : public Method {
     renderer = glRenderer();
   }
 
+  // What goes with it is this context's.
+  ~MarchMethod() override { context_->makeCurrent(); }
+
   void setVolume(const BrickVolume& bricks) override {
+    useContext();
     volume_.reset();  // two volumes at once may be more than the GPU holds
     volume_.emplace(bricks, pass_->filter(), limits_);
     bricks_ = &bricks;
@@ -65,6 +69,7 @@ class MarchMethod : public Method {
 
   Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
     NEPHELE_CHECK_EQ(volume_.has_value(), true);
+    useContext();
     auto start = Clock::now();
     const BrickAtlas& atlas = atlasFor(view, request);
     const int width = strided(request.width, request.stride),
@@ -112,6 +117,11 @@ class MarchMethod : public Method {
   }
 
  private:
+  /// Another method's context may be current.
+  void useContext() const {
+    if (!context_->makeCurrent()) throw WorldError("eglMakeCurrent failed without a surface");
+  }
+
   /// Voxels are walked as they are stored, however small they are in the picture.
   const BrickAtlas& atlasFor(const ViewedScene& view, const PictureRequest& request) {
     ViewedScene seen = view;

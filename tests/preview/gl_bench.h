@@ -19,7 +19,10 @@ namespace nephele::testing_gl {
 using testing_clouds::cloudDensity;
 using testing_clouds::volumeOf;
 
-inline void needContext() { static EglContext context; }
+inline void needContext() {
+  static EglContext context;
+  NEPHELE_CHECK_EQ(context.makeCurrent(), true);
+}
 
 /// One sample of each pixel through its place `subPixel`.
 inline FilmPicture marchOnGpu(MarchPass& pass, const BrickVolume& bricks, int width, int height,
