@@ -21,9 +21,8 @@ NPH_FN MarchResult walkVoxels(Ray r, uint random, uint number) {
   bool last = !(t < tFar);
   float arrived = last ? 1.0f : 0.0f;  // 1 once `last` was seen; see columnDensity
   while (!last) {
-    // The cell is the one that the ray is in a hair further on, so that rounding never holds it on a face.
+    // The voxel is the one that the ray is in a hair further on, so that rounding never holds it on a face.
     vec3 position = origin + (t + margin) * direction;
-    ivec3 cell = ivec3(floor(position));
     ivec3 brick = ivec3(floor(position / kBrickEdge));
     uvec2 word = isOutside(brick) ? uvec2(0u) : brickWord(brick);
     int edge = wordEdge(word);
