@@ -1,12 +1,12 @@
-// The search behind a tolerance. Depends on choice.h, trial.h, volume/difference.h.
+// The search behind a tolerance. Depends on choice.h, trial.h, base, volume/difference.h.
 #include "bake/choice.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "bake/trial.h"
+#include "base/figures.h"
 #include "volume/difference.h"
 
 namespace nephele {
@@ -21,17 +21,7 @@ constexpr int kBisections = 3;
 constexpr double kMostVoxels = 2.5e8;
 constexpr uint64_t kFreshSeed = 0;
 
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
-
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g%%", 100.0 * share);
-  return text;
-}
+std::string shown(double value) { return number(value, 4); }
 
 Asset lookOf(const Asset& asset, double voxelSize, Precision precision, int octaves) {
   Asset look = asset;

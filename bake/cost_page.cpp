@@ -1,28 +1,17 @@
 // A cost chart as CSV, picture and page. Depends on cost_chart.h, base.
-#include <cstdio>
 #include <sstream>
 
 #include "bake/cost_chart.h"
 #include "base/chart.h"
+#include "base/figures.h"
 #include "base/files.h"
+#include "base/front.h"
 #include "base/html.h"
 
 namespace nephele {
 namespace {
 
 constexpr double kMegabyte = 1e6;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.5g", value);
-  return text;
-}
-
-std::string percent(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g%%", 100.0 * value);
-  return text;
-}
 
 std::string precisionOf(const Asset& look) { return look.precision == Precision::half ? "half" : "float"; }
 
@@ -33,16 +22,6 @@ std::string octavesOf(const Asset& look) {
 std::string nameOf(const Asset& look) {
   return "voxel_size " + number(look.voxelSize) + ", " + precisionOf(look) + ", octaves " + octavesOf(look) +
          ", cutoff " + number(look.cutoff);
-}
-
-bool onFront(const CostChart& chart, size_t point) {
-  for (const size_t i : chart.front)
-    if (i == point) return true;
-  return false;
-}
-
-bool isKnee(const CostChart& chart, size_t point) {
-  return !chart.front.empty() && chart.front[chart.knee] == point;
 }
 
 Table tableOf(const CostChart& chart) {
@@ -56,7 +35,8 @@ Table tableOf(const CostChart& chart) {
                           number(p.look.cutoff), number(p.seconds), std::to_string(p.fileBytes),
                           std::to_string(p.gridBytes), std::to_string(p.voxelsActive),
                           number(p.densityLargest), number(p.densityRms), number(p.depthLargest),
-                          number(p.depthRms), onFront(chart, n) ? "1" : "0", isKnee(chart, n) ? "1" : "0"});
+                          number(p.depthRms), onFront(chart.front, n) ? "1" : "0",
+                          isKnee(chart.front, chart.knee, n) ? "1" : "0"});
   }
   return table;
 }
@@ -104,10 +84,11 @@ std::string pageOf(const CostChart& chart, const std::string& folder, bool drawn
           "largest<th>RMS<th>density, largest<th>RMS</tr>\n";
   for (size_t n = 0; n < chart.points.size(); ++n) {
     const CostPoint& p = chart.points[n];
-    page << (isKnee(chart, n) ? "<tr class=\"knee\"><td>" : "<tr><td>") << htmlEscaped(nameOf(p.look))
-         << (isKnee(chart, n)    ? " (knee)"
-             : onFront(chart, n) ? " (front)"
-                                 : "")
+    page << (isKnee(chart.front, chart.knee, n) ? "<tr class=\"knee\"><td>" : "<tr><td>")
+         << htmlEscaped(nameOf(p.look))
+         << (isKnee(chart.front, chart.knee, n) ? " (knee)"
+             : onFront(chart.front, n)          ? " (front)"
+                                                : "")
          << "<td>" << number(p.seconds) << "<td>" << number(double(p.fileBytes) / kMegabyte) << "<td>"
          << number(double(p.gridBytes) / kMegabyte) << "<td>" << percent(p.depthLargest) << "<td>"
          << percent(p.depthRms) << "<td>" << percent(p.densityLargest) << "<td>" << percent(p.densityRms)
@@ -144,8 +125,8 @@ std::string costFrontAsText(const CostChart& chart) {
   for (const size_t i : chart.front) {
     const CostPoint& p = chart.points[i];
     out << nameOf(p.look) << ": " << number(double(p.fileBytes) / kMegabyte) << " MB, " << number(p.seconds)
-        << " s, optical depth within " << percent(p.depthLargest) << (isKnee(chart, i) ? "  <- knee" : "")
-        << '\n';
+        << " s, optical depth within " << percent(p.depthLargest)
+        << (isKnee(chart.front, chart.knee, i) ? "  <- knee" : "") << '\n';
   }
   return out.str();
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "bake/particle_sources.h"
+#include "base/figures.h"
 #include "base/files.h"
 
 namespace nephele {
@@ -18,12 +19,6 @@ namespace fs = std::filesystem;
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g%%", 100.0 * share);
-  return text;
 }
 
 }  // namespace

@@ -38,4 +38,12 @@ size_t kneeOf(const std::vector<CostAndError>& points, const std::vector<size_t>
   return knee;
 }
 
+bool onFront(const std::vector<size_t>& front, size_t point) {
+  return std::find(front.begin(), front.end(), point) != front.end();
+}
+
+bool isKnee(const std::vector<size_t>& front, size_t knee, size_t point) {
+  return !front.empty() && front[knee] == point;
+}
+
 }  // namespace nephele

@@ -18,4 +18,8 @@ std::vector<size_t> paretoFront(const std::vector<CostAndError>& points);
 /// the front has no points between its ends.
 size_t kneeOf(const std::vector<CostAndError>& points, const std::vector<size_t>& front);
 
+/// Whether a point is on a front, and whether it is the one at `knee` on it.
+bool onFront(const std::vector<size_t>& front, size_t point);
+bool isKnee(const std::vector<size_t>& front, size_t knee, size_t point);
+
 }  // namespace nephele

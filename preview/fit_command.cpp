@@ -9,6 +9,7 @@
 
 #include "base/chart.h"
 #include "base/error.h"
+#include "base/figures.h"
 #include "base/files.h"
 #include "preview/measure/fit_octaves.h"
 #include "preview/render_command.h"
@@ -18,12 +19,6 @@
 
 namespace nephele {
 namespace {
-
-std::string percent(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g%%", 100.0 * value);
-  return text;
-}
 
 /// A volume on the table; its bricks do not move.
 struct Opened {

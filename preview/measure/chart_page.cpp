@@ -3,37 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "base/chart.h"
+#include "base/figures.h"
 #include "base/files.h"
+#include "base/front.h"
 #include "base/html.h"
 
 namespace nephele {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.5g", value);
-  return text;
-}
-
-std::string percent(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g%%", 100.0 * value);
-  return text;
-}
-
-bool onFront(const SweepResult& result, size_t setting) {
-  return std::any_of(result.front.begin(), result.front.end(),
-                     [&](size_t i) { return result.all[i].setting == setting; });
-}
-
-bool isKnee(const SweepResult& result, size_t setting) {
-  return !result.front.empty() && result.all[result.front[result.knee]].setting == setting;
+/// The setting of that name on the front, as an index into `all`.
+std::optional<size_t> frontNamed(const SweepResult& result, const std::string& name) {
+  for (const size_t i : result.front)
+    if (result.settings[result.all[i].setting].name == name) return i;
+  return {};
 }
 
 Table tableOf(const SweepResult& result) {
@@ -51,17 +39,16 @@ Table tableOf(const SweepResult& result) {
                   "p99",
                   "front",
                   "knee"};
-  const auto add = [&](const Measured& m) {
+  const auto add = [&](const Measured& m, bool front, bool knee) {
     const Setting& setting = result.settings[m.setting];
-    const bool whole = m.view == "all";
-    table.rows.push_back(
-        {setting.method, setting.name, m.view, number(m.milliseconds), std::to_string(setting.samples),
-         number(m.densitiesPerPixel), number(m.error.relativeRmse), number(m.error.low), number(m.error.high),
-         number(m.error.bias), number(m.error.p99), whole && onFront(result, m.setting) ? "1" : "0",
-         whole && isKnee(result, m.setting) ? "1" : "0"});
+    table.rows.push_back({setting.method, setting.name, m.view, number(m.milliseconds),
+                          std::to_string(setting.samples), number(m.densitiesPerPixel),
+                          number(m.error.relativeRmse), number(m.error.low), number(m.error.high),
+                          number(m.error.bias), number(m.error.p99), front ? "1" : "0", knee ? "1" : "0"});
   };
-  for (const Measured& m : result.all) add(m);
-  for (const Measured& m : result.single) add(m);
+  for (size_t i = 0; i < result.all.size(); ++i)
+    add(result.all[i], onFront(result.front, i), isKnee(result.front, result.knee, i));
+  for (const Measured& m : result.single) add(m, false, false);
   return table;
 }
 
@@ -149,7 +136,7 @@ std::string pageOf(const std::string& folder, const std::string& title, const Sw
           "interval<th>bias<th>p99</tr>\n";
   for (const size_t i : result.front) {
     const Measured& m = result.all[i];
-    const bool knee = isKnee(result, m.setting);
+    const bool knee = isKnee(result.front, result.knee, i);
     page << (knee ? "<tr class=\"knee\"><td>" : "<tr><td>") << htmlEscaped(result.settings[m.setting].name)
          << (knee ? " (knee)" : "") << "<td>" << number(m.milliseconds) << "<td>"
          << percent(m.error.relativeRmse) << "<td>" << percent(m.error.low) << " to " << percent(m.error.high)
@@ -161,10 +148,7 @@ std::string pageOf(const std::string& folder, const std::string& title, const Sw
   const Picture& truth = result.shots.front().picture;
   page << "<figure>" << imageOf(folder, truth, exposureEv) << "<figcaption>truth</figcaption></figure>\n";
   for (const auto& shot : result.shots) {
-    const auto at = std::find_if(result.settings.begin(), result.settings.end(),
-                                 [&](const Setting& setting) { return setting.name == shot.name; });
-    if (at == result.settings.end() || !onFront(result, static_cast<size_t>(at - result.settings.begin())))
-      continue;
+    if (!frontNamed(result, shot.name)) continue;
     page << "<figure>" << imageOf(folder, shot.picture, exposureEv) << "<br>"
          << imageOf(folder, differenceOf(shot.picture, truth), 0.0f) << "<figcaption>"
          << htmlEscaped(shot.name) << "</figcaption></figure>\n";
@@ -184,7 +168,7 @@ std::string frontAsText(const SweepResult& result) {
   for (const size_t i : result.front) {
     const Measured& m = result.all[i];
     out << result.settings[m.setting].name << ": " << number(m.milliseconds) << " ms, relative RMSE "
-        << percent(m.error.relativeRmse) << (isKnee(result, m.setting) ? "  <- knee" : "") << '\n';
+        << percent(m.error.relativeRmse) << (isKnee(result.front, result.knee, i) ? "  <- knee" : "") << '\n';
   }
   return out.str();
 }

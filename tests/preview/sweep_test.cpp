@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "base/chart.h"
+#include "base/figures.h"
+#include "base/front.h"
 #include "preview/truth/random.h"
 
 namespace nephele {
@@ -80,7 +82,20 @@ TEST(Pareto, KneeIsFarthestBelowTheLine) {
                                         pointAt(1000, 0.01)};
   const std::vector<size_t> front = paretoFront(points);
   EXPECT_EQ(front[kneeOf(points, front)], 2u);
+  const size_t knee = kneeOf(points, front);
+  EXPECT_TRUE(isKnee(front, knee, 2));
+  EXPECT_FALSE(isKnee(front, knee, front.back()));
+  EXPECT_TRUE(onFront(front, front.back()));
+  EXPECT_FALSE(onFront(front, points.size()));
+  EXPECT_FALSE(isKnee({}, 0, 0));
   EXPECT_EQ(kneeOf(points, {0, 3}), 0u);
+}
+
+TEST(Figures, HaveTheirDigits) {
+  EXPECT_EQ(number(1.0 / 3.0), "0.33333");
+  EXPECT_EQ(number(1.0 / 3.0, 2), "0.33");
+  EXPECT_EQ(percent(0.02345), "2.35%");
+  EXPECT_EQ(percent(0.0), "0%");
 }
 
 TEST(Chart, CellsAreQuotedWhereCommasWouldSplitThem) {
