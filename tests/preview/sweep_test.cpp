@@ -94,7 +94,7 @@ TEST(Pareto, KneeIsFarthestBelowTheLine) {
 TEST(Figures, HaveTheirDigits) {
   EXPECT_EQ(number(1.0 / 3.0), "0.33333");
   EXPECT_EQ(number(1.0 / 3.0, 2), "0.33");
-  EXPECT_EQ(percent(0.02345), "2.35%");
+  EXPECT_EQ(percent(0.0234567), "2.35%");
   EXPECT_EQ(percent(0.0), "0%");
 }
 
