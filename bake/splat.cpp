@@ -15,6 +15,7 @@
 #include "bake/splat_batch.h"
 #include "bake/splat_leaf.h"
 #include "bake/splat_shaped.h"
+#include "bake/splat_tile.h"
 #include "base/hash.h"
 #include "volume/vdb_file.h"
 
@@ -33,21 +34,28 @@ using openvdb::Coord;
 // up apart, so that ten million particles in one voxel lose no digits.
 constexpr size_t kBatch = 16384;
 
-/// Room for one tile's voxels, which a thread keeps for its next tile. All 0 between tiles, but for what lies
-/// outside of the tile.
+/// Room for one tile's particles and voxels, which a thread keeps for its next tile. Voxels are all 0 between
+/// tiles, but for what lies outside of the tile.
 struct TileRoom {
+  SplatBatch batch;
   std::vector<float> values =
       std::vector<float>(size_t(SplatTile::kEdge) * SplatTile::kEdge * SplatTile::kPitch, 0.0f);
   std::vector<uint8_t> touched = std::vector<uint8_t>(kLeavesOfTile, 0);
-};
 
-struct TileResult {
-  std::vector<std::pair<int, OpenLeaf>> leaves;  // by growing number
-  SplatLedger ledger;
-  float maximum = 0.0f;
-  uint64_t active = 0;
-  openvdb::CoordBBox box;  // of active voxels
-  bool constant = false;   // whether a leaf holds one value alone, so that there is something to prune
+  /// Moves a leaf's rows to `to`, or adds them there.
+  void take(const Coord& inTile, bool add, float* to) {
+    for (int x = 0; x < kLeafEdge; ++x)
+      for (int y = 0; y < kLeafEdge; ++y, to += kLeafEdge) {
+        float* const from = values.data() +
+                            ((inTile.x() + x) * SplatTile::kEdge + inTile.y() + y) * SplatTile::kPitch +
+                            SplatTile::kBefore + inTile.z();
+        if (add)
+          for (int z = 0; z < kLeafEdge; ++z) to[z] += from[z];
+        else
+          std::memcpy(to, from, kLeafEdge * sizeof(float));
+        std::memset(from, 0, kLeafEdge * sizeof(float));
+      }
+  }
 };
 
 class Splatter {
@@ -71,6 +79,7 @@ class Splatter {
  private:
   /// What each particle's kernel is multiplied by: its mass over the voxel's volume and the kernel's sum.
   void findScales() {
+    if (sorter_.allSmall()) return;
     scales_.resize(particles_.size());
     const double volume = settings_.voxelSize * settings_.voxelSize * settings_.voxelSize;
     constexpr size_t kAtOnce = 256;
@@ -92,7 +101,7 @@ class Splatter {
         }
         const SplatRecord record = places_.placeOf(n);
         scales_[n] = float(density);
-        if (record.radius <= 1.0f || sorter_.isSmall(record)) continue;
+        if (record.radius <= 1.0f || sorter_.isSmall(record.radius)) continue;
         owner[count] = n;
         records[count++] = record;
       }
@@ -107,13 +116,17 @@ class Splatter {
     const Coord origin(at.x, at.y, at.z);
     std::vector<OpenLeaf> leaves(kLeavesOfTile);
     const std::span<const uint32_t> all = places_.particlesOf(tile);
-    SplatBatch batch;
+    TileRoom& room = rooms_.local();
+    SplatBatch& batch = room.batch;
     const size_t batches = (all.size() + kBatch - 1) / kBatch;
     for (size_t b = 0; b < batches; ++b) {
+      if (b > 0) takeAll(origin, room, leaves);
       const size_t begin = all.size() * b / batches, end = all.size() * (b + 1) / batches;
       batch.particles = all.subspan(begin, end - begin);
       sorter_.sort(at, batch);
-      addSmall(batch, origin, leaves);
+      splatIntoTile(settings_.kernel, batch.small.data(), batch.smallOrder.data(), batch.small.size(),
+                    {room.values.data(), room.touched.data()});
+      if (batch.list.empty()) continue;
       forEachLeaf(batch.list.size(), [&](int leaf) { addToLeaf(batch, origin, leaf, leaves[size_t(leaf)]); });
     }
     TileResult result;
@@ -121,6 +134,7 @@ class Splatter {
     std::vector<float> maxima(kLeavesOfTile, 0.0f);
     forEachLeaf(all.size(), [&](int leaf) {
       const size_t n = size_t(leaf);
+      takeLeaf(origin, leaf, room, leaves[n]);
       if (leaves[n].density) leaves_.close(originOf(origin, leaf), leaves[n], ledgers[n], maxima[n]);
     });
     float constantValue = 0.0f;
@@ -133,7 +147,7 @@ class Splatter {
       if (!leaves[n].density) continue;
       const Leaf& leaf = *leaves[n].density;
       result.active += leaf.onVoxelCount();
-      leaf.evalActiveBoundingBox(result.box);  // looks at voxels only where the leaf lies outside the box
+      result.origins.expand(leaf.origin());
       result.constant = result.constant || leaf.isConstant(constantValue, constantState);
       result.leaves.emplace_back(int(n), std::move(leaves[n]));
     }
@@ -158,33 +172,17 @@ class Splatter {
                          leaf / kTileLeaves % kTileLeaves * kLeafEdge, leaf % kTileLeaves * kLeafEdge);
   }
 
-  /// Adds the batch's small particles through one array, plane after plane along x, so that what they touch
-  /// stays near.
-  void addSmall(const SplatBatch& batch, const Coord& tile, std::vector<OpenLeaf>& leaves) const {
-    if (batch.small.empty()) return;
-    TileRoom& room = rooms_.local();
-    splatIntoTile(settings_.kernel, batch.small.data(), batch.small.size(),
-                  {room.values.data(), room.touched.data()});
-    for (int leaf = 0; leaf < kLeavesOfTile; ++leaf) {
-      if (room.touched[size_t(leaf)] == 0) continue;
-      room.touched[size_t(leaf)] = 0;
-      OpenLeaf& open = leaves[size_t(leaf)];
-      const Coord at = originOf(Coord(0), leaf);
-      const bool fresh = !open.density;
-      if (fresh) leaves_.open(tile + at, open);
-      float* to = open.density->buffer().data();
-      for (int x = 0; x < kLeafEdge; ++x)
-        for (int y = 0; y < kLeafEdge; ++y, to += kLeafEdge) {
-          float* const from = room.values.data() +
-                              ((at.x() + x) * SplatTile::kEdge + at.y() + y) * SplatTile::kPitch +
-                              SplatTile::kBefore + at.z();
-          if (fresh)
-            std::memcpy(to, from, kLeafEdge * sizeof(float));
-          else
-            for (int z = 0; z < kLeafEdge; ++z) to[z] += from[z];
-          std::memset(from, 0, kLeafEdge * sizeof(float));
-        }
-    }
+  /// Moves what small particles have given to the tile's voxels into its leaves.
+  void takeAll(const Coord& tile, TileRoom& room, std::vector<OpenLeaf>& leaves) const {
+    for (int leaf = 0; leaf < kLeavesOfTile; ++leaf) takeLeaf(tile, leaf, room, leaves[size_t(leaf)]);
+  }
+
+  void takeLeaf(const Coord& tile, int leaf, TileRoom& room, OpenLeaf& open) const {
+    if (room.touched[size_t(leaf)] == 0) return;
+    room.touched[size_t(leaf)] = 0;
+    const bool there = bool(open.density);
+    if (!there) leaves_.allocate(originOf(tile, leaf), open);
+    room.take(originOf(Coord(0), leaf), there, open.density->buffer().data());
   }
 
   void addToLeaf(const SplatBatch& batch, const Coord& tile, int leaf, OpenLeaf& open) const {
@@ -258,27 +256,23 @@ class Splatter {
     const auto temperature = settings_.temperature ? makeFogGrid("temperature", h, settings_.half) : nullptr;
     const auto age = settings_.age ? makeFogGrid("age", h, settings_.half) : nullptr;
     const auto velocity = settings_.vel ? makeVelocityGrid(h, settings_.half) : nullptr;
-    openvdb::tree::ValueAccessor<openvdb::FloatTree> into(density->tree());
     Splatted result;
-    for (const float mass : particles_.mass) result.ledger.given += double(mass);
+    result.ledger.given = places_.mass();
     uint64_t count = 0;
-    openvdb::CoordBBox active;
+    openvdb::CoordBBox active = activeBoxOf(tiles);
     bool constant = false;
-    for (size_t t = 0; t < tiles.size(); ++t) {
-      count += tiles[t].active;
-      constant = constant || tiles[t].constant;
-      if (!tiles[t].box.empty()) active.expand(tiles[t].box);
-      result.ledger.splatted += tiles[t].ledger.splatted * volume;
-      result.ledger.lostToCutoff += tiles[t].ledger.lostToCutoff * volume;
-      result.ledger.stored += tiles[t].ledger.stored * volume;
-      result.maximum = std::max(result.maximum, double(tiles[t].maximum));
-      for (auto& [number, leaf] : tiles[t].leaves) {
-        into.addLeaf(leaf.density.release());
-        if (leaf.temperature) temperature->tree().addLeaf(leaf.temperature.release());
-        if (leaf.age) age->tree().addLeaf(leaf.age.release());
-        if (leaf.velocity) velocity->tree().addLeaf(leaf.velocity.release());
-      }
+    for (const TileResult& tile : tiles) {
+      count += tile.active;
+      constant = constant || tile.constant;
+      result.ledger.splatted += tile.ledger.splatted * volume;
+      result.ledger.lostToCutoff += tile.ledger.lostToCutoff * volume;
+      result.ledger.stored += tile.ledger.stored * volume;
+      result.maximum = std::max(result.maximum, double(tile.maximum));
     }
+    addLeaves(density->tree(), tiles, &OpenLeaf::density);
+    if (temperature) addLeaves(temperature->tree(), tiles, &OpenLeaf::temperature);
+    if (age) addLeaves(age->tree(), tiles, &OpenLeaf::age);
+    if (velocity) addLeaves(velocity->tree(), tiles, &OpenLeaf::velocity);
     if (settings_.box) result.ledger.outsideBox = result.ledger.given - result.ledger.splatted;
     result.ledger.lostToHalf = result.ledger.splatted - result.ledger.lostToCutoff - result.ledger.stored;
     if (constant) openvdb::tools::prune(density->tree());

@@ -8,15 +8,24 @@
 namespace nephele {
 namespace {
 
-/// A stable counting sort by cell: equal cells keep their order.
-void sortAlongX(const std::vector<SplatRecord>& small, std::vector<SplatRecord>& sorted) {
-  // Cells of small particles lie up to their reach outside the tile.
-  constexpr int kOutside = 8;
-  std::array<uint32_t, kTileEdge + 2 * kOutside + 1> next{};
-  for (const SplatRecord& p : small) ++next[size_t(p.cell[0] + kOutside) + 1];
+// Cells of small particles lie up to their reach outside the tile.
+constexpr int kOutside = 8;
+constexpr int kCells = kTileEdge + 2 * kOutside;
+constexpr int kStripes = kCells / kLeafEdge;
+
+/// Which part of the tile a particle is added to: stripes of 8 voxels along y, and in each plane after plane
+/// along x, so that what neighbours touch stays in the first cache.
+size_t stripeOf(const SplatRecord& p) {
+  return size_t(((p.cell[1] + kOutside) / kLeafEdge) * kCells + p.cell[0] + kOutside);
+}
+
+/// A stable counting sort by stripe: equal ones keep their order.
+void sortByStripe(const std::vector<SplatRecord>& small, std::vector<uint32_t>& order) {
+  std::array<uint32_t, size_t(kStripes) * kCells + 1> next{};
+  for (const SplatRecord& p : small) ++next[stripeOf(p) + 1];
   for (size_t n = 1; n < next.size(); ++n) next[n] += next[n - 1];
-  sorted.resize(small.size());
-  for (const SplatRecord& p : small) sorted[next[size_t(p.cell[0] + kOutside)]++] = p;
+  order.resize(small.size());
+  for (size_t n = 0; n < small.size(); ++n) order[next[stripeOf(small[n])]++] = uint32_t(n);
 }
 
 }  // namespace
@@ -42,42 +51,48 @@ SplatSorter::SplatSorter(const SplatParticles& particles, const SplatSettings& s
       settings_(settings),
       places_(places),
       scales_(scales),
+      perVolume_(1.0 / (settings.voxelSize * settings.voxelSize * settings.voxelSize)),
       extras_(settings.vel || settings.temperature || settings.age),
       shaped_(places.anyShaped()) {}
+
+// Particles of a tile lie far apart in memory: asked for this many ahead, they are there when they are
+// needed.
+constexpr size_t kAhead = 16;
 
 void SplatSorter::sort(const glm::ivec3& tile, SplatBatch& batch) const {
   batch.records.clear();
   batch.owners.clear();
-  std::vector<SplatRecord> small;
   batch.extras.clear();
-  std::vector<Reach> reaches;
+  batch.small.clear();
+  batch.small.reserve(batch.particles.size());
   batch.starts.assign(size_t(kLeavesOfTile * kSplatWays) + 1, 0);
-  // Particles of a tile lie far apart in memory: asked for this many ahead, they are there when they are
-  // needed.
-  constexpr size_t kAhead = 16;
+  std::vector<Reach> reaches;
   const size_t count = batch.particles.size();
   for (size_t k = 0; k < count; ++k) {
     const size_t n = batch.particles[k], soon = batch.particles[std::min(k + kAhead, count - 1)];
     places_.prefetch(soon);
-    __builtin_prefetch(scales_.data() + soon);
-    Reach reach;
-    const SplatRecord record = recordOf(n, tile, reach);
-    if (isSmall(record)) {
-      if (!reach.empty()) small.push_back(record);
+    __builtin_prefetch(scales_.empty() ? particles_.mass.data() + soon : scales_.data() + soon);
+    if (isSmall(places_.radiusOf(n))) {
+      SplatRecord& record = batch.small.emplace_back(places_.placeOf(n));
+      for (int axis = 0; axis < 3; ++axis) record.cell[axis] -= tile[axis];
+      record.scale = scaleOf(n);
       continue;
     }
-    batch.records.push_back(record);
+    Reach reach;
+    batch.records.push_back(recordOf(n, tile, reach));
     batch.owners.push_back(uint32_t(n));
     reaches.push_back(reach);
     if (extras_) batch.extras.push_back(extrasOf(n));
     reach.forEachList([&](size_t list) { ++batch.starts[list + 1]; });
   }
+  sortByStripe(batch.small, batch.smallOrder);
+  batch.list.clear();
+  if (reaches.empty()) return;
   for (size_t n = 1; n < batch.starts.size(); ++n) batch.starts[n] += batch.starts[n - 1];
   batch.list.resize(batch.starts.back());
   std::vector<uint32_t> next(batch.starts.begin(), batch.starts.end() - 1);
   for (size_t k = 0; k < reaches.size(); ++k)
     reaches[k].forEachList([&](size_t list) { batch.list[next[list]++] = uint32_t(k); });
-  sortAlongX(small, batch.small);
 }
 
 /// The particle in a tile's frame, and the leaves of the tile that it reaches.
@@ -91,7 +106,7 @@ SplatRecord SplatSorter::recordOf(size_t n, const glm::ivec3& tile, Reach& reach
     way = f.way;
     for (int axis = 0; axis < 3; ++axis) from[axis] = f.low[axis], to[axis] = f.high[axis];
     // An eroded particle of which nothing is left is kept as a point.
-    if (scales_[n] < 0.0f) way = SplatWay::point;
+    if (scaleOf(n) < 0.0f) way = SplatWay::point;
   } else {
     record = places_.placeOf(n);
     way = record.radius <= 1.0f ? SplatWay::point : SplatWay::round;
@@ -112,7 +127,7 @@ SplatRecord SplatSorter::recordOf(size_t n, const glm::ivec3& tile, Reach& reach
     if (first > last) reach.low[axis] = 1;
   }
   reach.way = uint8_t(way);
-  record.scale = std::abs(scales_[n]);
+  record.scale = std::abs(scaleOf(n));
   return record;
 }
 

@@ -17,7 +17,8 @@ struct SplatBatch {
   std::span<const uint32_t> particles;
   std::vector<SplatRecord> records;  // those that leaves take, cells in the tile's frame
   std::vector<uint32_t> owners;      // the particle of each record
-  std::vector<SplatRecord> small;    // those that the tile takes whole, by place along x
+  std::vector<SplatRecord> small;    // those that the tile takes whole
+  std::vector<uint32_t> smallOrder;  // the same, neighbours after each other
   std::vector<SplatExtras> extras;
   std::vector<uint32_t> starts, list;  // of each leaf and way
 
@@ -30,19 +31,26 @@ struct SplatBatch {
 /// Sorts particles of a tile. Immutable, safe to share between threads; keeps references to its arguments.
 class SplatSorter {
  public:
-  /// `scales` holds what each particle's kernel is multiplied by; below 0: a point.
+  /// `scales` holds what each particle's kernel is multiplied by; below 0: a point. Empty where tiles take
+  /// all particles whole or as points.
   SplatSorter(const SplatParticles& particles, const SplatSettings& settings, const SplatPlaces& places,
               const std::vector<float>& scales);
 
   /// Whether a tile takes the particle whole, and scales its kernel itself.
-  bool isSmall(const SplatRecord& record) const {
-    return !extras_ && !shaped_ && record.radius > 1.0f && record.radius <= SplatTile::kWidest;
+  bool isSmall(float radiusVoxels) const {
+    return takesSmall() && radiusVoxels > 1.0f && radiusVoxels <= SplatTile::kWidest;
   }
+  /// Whether no particle needs a scale of its own: each is small, or a point.
+  bool allSmall() const { return takesSmall() && places_.widest() <= SplatTile::kWidest; }
   /// Fills the rest of the batch from its `particles`; the tile begins at voxel `tile`.
   void sort(const glm::ivec3& tile, SplatBatch& batch) const;
 
  private:
+  bool takesSmall() const { return !extras_ && !shaped_; }
   struct Reach;
+  float scaleOf(size_t particle) const {
+    return scales_.empty() ? float(double(particles_.mass[particle]) * perVolume_) : scales_[particle];
+  }
   SplatRecord recordOf(size_t particle, const glm::ivec3& tile, Reach& reach) const;
   SplatExtras extrasOf(size_t particle) const;
 
@@ -50,6 +58,7 @@ class SplatSorter {
   const SplatSettings& settings_;
   const SplatPlaces& places_;
   const std::vector<float>& scales_;
+  const double perVolume_;  // 1 over a voxel's volume
   const bool extras_, shaped_;
 };
 

@@ -49,7 +49,7 @@ double radialSum(const SplatRecord& p) {
         const float dy = float(yAt) - p.rest[1], aside = dx2 + dy * dy * perSquare;
         if (aside >= 1.0f) continue;
         for (size_t k = 0; k < kParts; ++k)
-          plane.part[k] = hn::Add(plane.part[k], Kernel::at(hn::Add(dz.part[k], hn::Set(D(), aside))));
+          plane.part[k] = hn::Add(plane.part[k], Kernel::at(D(), hn::Add(dz.part[k], hn::Set(D(), aside))));
       }
       sum += sumOf(plane);
     }
@@ -130,7 +130,7 @@ HWY_INLINE void radialIntoLeaf(const SplatRecord& p, const SplatExtras* extras, 
       if (aside >= 1.0f) continue;
       Row row;
       for (size_t k = 0; k < kParts; ++k)
-        row.part[k] = hn::Mul(Kernel::at(hn::Add(dz.part[k], hn::Set(D(), aside))), scale);
+        row.part[k] = hn::Mul(Kernel::at(D(), hn::Add(dz.part[k], hn::Set(D(), aside))), scale);
       addRow<kExtras>(row, extras, (x * kLeafEdge + y) * kLeafEdge, leaf);
     }
   }
@@ -200,7 +200,7 @@ double shapedWith(const SplatRecord& p, const SplatShape& shape, const int32_t o
           const auto q = hn::Add(hn::Sqrt(squared), eaten);
           squared = hn::Mul(q, q);
         }
-        const auto weight = Kernel::at(squared);
+        const auto weight = Kernel::at(D(), squared);
         hn::StoreU(weight, d, weights + offset + k * kLanes);
         plane.part[k] = hn::Add(plane.part[k], weight);
       }

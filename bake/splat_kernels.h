@@ -68,9 +68,10 @@ struct SplatTile {
   uint8_t* touched;  // [kLeaves³]: 1 where a leaf was given anything
 };
 
-/// Adds particles of radius 1 < r ≤ kWidest, in order. Their cells are relative to the tile; their `scale` is
-/// mass over the volume of a voxel: kernels are summed and scaled here.
-void splatIntoTile(SplatKernel kernel, const SplatRecord* records, size_t count, const SplatTile& tile);
+/// Adds records[order[0]], records[order[1]] … of radius 1 < r ≤ kWidest. Their cells are relative to the
+/// tile; their `scale` is mass over the volume of a voxel: kernels are summed and scaled here.
+void splatIntoTile(SplatKernel kernel, const SplatRecord* records, const uint32_t* order, size_t count,
+                   const SplatTile& tile);
 
 /// The kernel of one stretched or eroded particle on the 8³ voxels from `origin`, not scaled: weights[512],
 /// and their sum. `field` (512 values of the field there) may be null.

@@ -45,9 +45,13 @@ SplatLeaves::SplatLeaves(const SplatSettings& settings) : settings_(settings) {
   }
 }
 
-void SplatLeaves::open(const Coord& origin, OpenLeaf& leaf) const {
+void SplatLeaves::allocate(const Coord& origin, OpenLeaf& leaf) const {
   leaf.density = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, 0.0f);
   leaf.density->allocate();
+}
+
+void SplatLeaves::open(const Coord& origin, OpenLeaf& leaf) const {
+  allocate(origin, leaf);
   std::memset(leaf.density->buffer().data(), 0, kLeafVoxels * sizeof(float));
   if (extras()) leaf.extras = std::make_unique<ExtraSums>();  // all 0
 }
@@ -57,14 +61,20 @@ void SplatLeaves::close(const Coord& origin, OpenLeaf& open, SplatLedger& ledger
   if (settings_.box) cutToBox(origin, values);
   const LeafRules rules{float(settings_.cutoff),
                         settings_.half ? kHalfLargest : std::numeric_limits<float>::max(), settings_.half};
+  // Floats above 0 that are neither cut nor rounded are stored as they are.
+  const bool lossless = !rules.half && rules.cutoff <= 0.0f && !extras();
   float sums[kLeafVoxels];
-  std::copy_n(values, kLeafVoxels, sums);
+  if (!lossless) std::copy_n(values, kLeafVoxels, sums);
   const LeafScan scan = scanLeaf(rules, values);
-  if (!scan.storable) refuseUnstorable(origin, sums, rules.limit);
-  const SplatLosses losses = splatLosses(sums, values, rules.cutoff);
-  ledger.splatted = losses.before;
-  ledger.lostToCutoff = losses.cut;
-  ledger.stored = losses.before - losses.cut - losses.rounded;
+  if (!scan.storable) refuseUnstorable(origin, lossless ? values : sums, rules.limit);
+  if (lossless) {
+    ledger.splatted = ledger.stored = scan.mass;
+  } else {
+    const SplatLosses losses = splatLosses(sums, values, rules.cutoff);
+    ledger.splatted = losses.before;
+    ledger.lostToCutoff = losses.cut;
+    ledger.stored = losses.before - losses.cut - losses.rounded;
+  }
   maximum = scan.maximum;
   if (!scan.active) {
     open.density.reset();

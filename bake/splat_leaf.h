@@ -35,6 +35,8 @@ class SplatLeaves {
   /// The voxels of the settings' box; empty where there is none.
   const openvdb::CoordBBox& box() const { return box_; }
 
+  /// Its values are undefined; there must be no grids beside density.
+  void allocate(const openvdb::Coord& origin, OpenLeaf& leaf) const;
   /// All sums 0.
   void open(const openvdb::Coord& origin, OpenLeaf& leaf) const;
   /// Turns sums into what the file stores, and adds up the masses, in units of a voxel's volume. The density

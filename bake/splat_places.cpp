@@ -48,7 +48,7 @@ void forEachChunk(size_t count, size_t chunks, const Body& body) {
 }  // namespace
 
 SplatPlaces::SplatPlaces(const SplatParticles& particles, const SplatSettings& settings)
-    : particles_(particles), settings_(settings) {
+    : particles_(particles), settings_(settings), perVoxel_(1.0 / settings.voxelSize) {
   if (settings_.voxelSize < kSmallestVoxel)
     throw SplatError("voxels of " + shown(settings_.voxelSize) + " world units are below " +
                      shown(kSmallestVoxel) + ", the smallest that a .vdb can hold; use larger units");
@@ -133,7 +133,8 @@ void SplatPlaces::findBox() {
   const size_t count = particles_.size(), chunks = chunksOf(count, 1);
   struct Extent {
     glm::vec3 low{std::numeric_limits<float>::max()}, high{-std::numeric_limits<float>::max()};
-    double reach = 0.0;
+    double reach = 0.0, mass = 0.0;
+    float widest = 0.0f;
     size_t bad = std::numeric_limits<size_t>::max();
   };
   std::vector<Extent> extents(chunks);
@@ -151,7 +152,9 @@ void SplatPlaces::findBox() {
       const glm::vec3 p(particles_.x[n], particles_.y[n], particles_.z[n]);
       own.low = glm::min(own.low, p);
       own.high = glm::max(own.high, p);
-      own.reach = std::max(own.reach, anyShaped() ? reachOf(n) : double(particles_.radius[n]));
+      own.mass += double(particles_.mass[n]);
+      own.widest = std::max(own.widest, particles_.radius[n]);
+      if (anyShaped()) own.reach = std::max(own.reach, reachOf(n));
     }
     extents[c] = own;
   });
@@ -159,12 +162,16 @@ void SplatPlaces::findBox() {
   for (const Extent& e : extents) {
     all.low = glm::min(all.low, e.low);
     all.high = glm::max(all.high, e.high);
-    all.reach = std::max(all.reach, e.reach);
+    all.reach = std::max({all.reach, e.reach, double(e.widest)});
+    all.widest = std::max(all.widest, e.widest);
+    all.mass += e.mass;
     all.bad = std::min(all.bad, e.bad);
   }
   // The first of them, whichever thread came first.
   if (all.bad < count) check(all.bad);
   const double h = settings_.voxelSize;
+  mass_ = all.mass;
+  widest_ = float(double(all.widest) * perVoxel_);
   glm::ivec3 low, high;
   double voxels = 1.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -189,9 +196,9 @@ void SplatPlaces::forEachTileOf(size_t n, const Body& body) const {
   } else {
     // At least a voxel, which a point's weights reach; a little more, so that rounding leaves out none.
     constexpr double kRoom = 1e-5;
-    const double perTile = 1.0 / (settings_.voxelSize * double(kTileEdge));
+    const double perTile = perVoxel_ / double(kTileEdge);
     const double reach =
-        std::max(double(particles_.radius[n]), settings_.voxelSize) * (1.0 + kRoom) * perTile + kRoom;
+        std::max(double(particles_.radius[n]) * perVoxel_, 1.0) * ((1.0 + kRoom) / double(kTileEdge)) + kRoom;
     const float place[] = {particles_.x[n], particles_.y[n], particles_.z[n]};
     for (int axis = 0; axis < 3; ++axis) {
       const double at = double(place[axis]) * perTile;

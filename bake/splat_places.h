@@ -37,6 +37,12 @@ class SplatPlaces {
   SplatFrame frameOf(size_t particle) const;
   /// A particle that is neither stretched nor eroded, its cell in the grid's frame, scale 0.
   SplatRecord placeOf(size_t particle) const;
+  /// In voxels.
+  float radiusOf(size_t particle) const { return float(double(particles_.radius[particle]) * perVoxel_); }
+  /// The largest radius, in voxels.
+  float widest() const { return widest_; }
+  /// Σ of all masses.
+  double mass() const { return mass_; }
   /// Asks the memory for a particle that will be needed soon.
   void prefetch(size_t particle) const;
 
@@ -58,6 +64,9 @@ class SplatPlaces {
 
   const SplatParticles& particles_;
   const SplatSettings& settings_;
+  const double perVoxel_;  // 1 over a voxel's size
+  float widest_ = 0.0f;
+  double mass_ = 0.0;
   glm::ivec3 lowTile_{0}, tileBox_{0};  // the box of tiles that holds all particles
   std::vector<uint32_t> tiles_;         // place of each used tile in that box
   std::vector<uint64_t> starts_;        // of each used tile in entries_
@@ -68,14 +77,14 @@ inline SplatRecord SplatPlaces::placeOf(size_t n) const {
   SplatRecord record;
   const float place[] = {particles_.x[n], particles_.y[n], particles_.z[n]};
   for (int axis = 0; axis < 3; ++axis) {
-    const double at = double(place[axis]) / settings_.voxelSize;
+    const double at = double(place[axis]) * perVoxel_;
     const int32_t cell = floorToInt(at);
     const float rest = float(at - double(cell));
     // A rest that rounds up to a voxel is the next voxel's 0.
     record.cell[axis] = rest < 1.0f ? cell : cell + 1;
     record.rest[axis] = rest < 1.0f ? rest : 0.0f;
   }
-  record.radius = float(double(particles_.radius[n]) / settings_.voxelSize);
+  record.radius = radiusOf(n);
   record.scale = 0.0f;
   return record;
 }

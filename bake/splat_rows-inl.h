@@ -58,8 +58,8 @@ HWY_INLINE double sumOf(const Row& row) {
 }
 
 /// e^x for −80 ≤ x ≤ 0, by the operations of the shared text's exponential().
-HWY_INLINE V exponentialOf(V x) {
-  const D d;
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> exponentialOf(Tag d, hn::Vec<Tag> x) {
   const auto k = hn::Floor(hn::Add(hn::Mul(x, hn::Set(d, 1.44269504f)), hn::Set(d, 0.5f)));
   const auto r =
       hn::Sub(hn::Sub(x, hn::Mul(k, hn::Set(d, 0.693359375f))), hn::Mul(k, hn::Set(d, -2.12194440e-4f)));
@@ -67,7 +67,7 @@ HWY_INLINE V exponentialOf(V x) {
   for (const float term : {1.0f / 120.0f, 1.0f / 24.0f, 1.0f / 6.0f, 0.5f})
     series = hn::Add(hn::Set(d, term), hn::Mul(r, series));
   const auto power = hn::Add(hn::Set(d, 1.0f), hn::Add(r, hn::Mul(hn::Mul(r, r), series)));
-  const hn::RebindToSigned<D> di;
+  const hn::RebindToSigned<Tag> di;
   const auto exponent = hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(di, k), hn::Set(di, 127)));
   return hn::Mul(power, hn::BitCast(d, exponent));
 }
@@ -79,8 +79,8 @@ constexpr float kGaussianRate = 4.5f;
 struct Wendland {
   static constexpr SplatKernel kName = SplatKernel::wendland;
   /// (1 − q)⁴ (4q + 1) [Wendland 1995, C2].
-  static HWY_INLINE V at(V squared) {
-    const D d;
+  template <class Tag>
+  static HWY_INLINE hn::Vec<Tag> at(Tag d, hn::Vec<Tag> squared) {
     const auto q = hn::Sqrt(squared);
     const auto t = hn::Max(hn::Sub(hn::Set(d, 1.0f), q), hn::Zero(d));
     const auto t2 = hn::Mul(t, t);
@@ -90,8 +90,8 @@ struct Wendland {
 struct SmoothSphere {
   static constexpr SplatKernel kName = SplatKernel::smoothSphere;
   /// 1 up to half the radius, then s² (3 − 2s), s = (1 − q²)/(3/4).
-  static HWY_INLINE V at(V squared) {
-    const D d;
+  template <class Tag>
+  static HWY_INLINE hn::Vec<Tag> at(Tag d, hn::Vec<Tag> squared) {
     const auto one = hn::Set(d, 1.0f);
     const auto s =
         hn::Min(hn::Max(hn::Mul(hn::Sub(one, squared), hn::Set(d, 4.0f / 3.0f)), hn::Zero(d)), one);
@@ -100,10 +100,10 @@ struct SmoothSphere {
 };
 struct Gaussian {
   static constexpr SplatKernel kName = SplatKernel::gaussian;
-  static HWY_INLINE V at(V squared) {
-    const D d;
+  template <class Tag>
+  static HWY_INLINE hn::Vec<Tag> at(Tag d, hn::Vec<Tag> squared) {
     const auto nearer = hn::Min(squared, hn::Set(d, 1.0f));
-    const auto value = exponentialOf(hn::Mul(nearer, hn::Set(d, -kGaussianRate)));
+    const auto value = exponentialOf(d, hn::Mul(nearer, hn::Set(d, -kGaussianRate)));
     return hn::IfThenElseZero(hn::Lt(squared, hn::Set(d, 1.0f)), value);
   }
 };
@@ -112,7 +112,7 @@ struct Gaussian {
 HWY_INLINE Row gaussianFactors(int first, float rest, float perSquare) {
   Row row = apartFrom(first, rest);
   for (size_t k = 0; k < kParts; ++k)
-    row.part[k] = Gaussian::at(hn::Mul(hn::Mul(row.part[k], row.part[k]), hn::Set(D(), perSquare)));
+    row.part[k] = Gaussian::at(D(), hn::Mul(hn::Mul(row.part[k], row.part[k]), hn::Set(D(), perSquare)));
   return row;
 }
 

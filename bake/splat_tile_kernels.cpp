@@ -3,6 +3,7 @@
 #include "bake/splat_kernels.h"
 
 #include <algorithm>
+#include <type_traits>
 
 // Vectors of a size that is unknown until run time can be held in no array, as these kernels do.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
@@ -83,7 +84,7 @@ HWY_INLINE void radialIntoTile(const SplatRecord& p, const SplatTile& tile) {
       const auto both = hn::Set(d, aside[count]);
       for (int r = 0; r < kRows; ++r)
         for (size_t k = 0; k < kParts; ++k) {
-          const auto value = Kernel::at(hn::Add(dz[r].part[k], both));
+          const auto value = Kernel::at(d, hn::Add(dz[r].part[k], both));
           rows[count * kRows + r].part[k] = value;
           total.part[k] = hn::Add(total.part[k], value);
         }
@@ -101,71 +102,132 @@ HWY_INLINE void radialIntoTile(const SplatRecord& p, const SplatTile& tile) {
     }
 }
 
-// Four voxels along z, of which two rows fill a Row.
+// Four voxels along each axis: a plane of them is one vector where vectors are that long.
 constexpr int kShortEdge = 4;
+constexpr size_t kPlane = size_t(kShortEdge) * kShortEdge;
+using DPlane = hn::CappedTag<float, kPlane>;
+constexpr size_t kPlaneLanes = hn::MaxLanes(DPlane());
 using DShort = hn::CappedTag<float, kShortEdge>;
 constexpr size_t kShortLanes = hn::MaxLanes(DShort());
 
-HWY_INLINE void addShort(const float* values, float scale, float* to) {
-  const DShort d;
-  for (size_t k = 0; k < kShortEdge; k += kShortLanes) {
-    const auto given = hn::Mul(hn::LoadU(d, values + k), hn::Set(d, scale));
-    hn::StoreU(hn::Add(hn::LoadU(d, to + k), given), d, to + k);
-  }
-}
+/// What a particle of at most four voxels along each axis gives to them, [x][y][z].
+struct ShortCube {
+  alignas(64) float values[kShortEdge][kPlane];
+};
 
-/// The same for a particle of at most four voxels along each axis: two rows at a time.
-template <class Kernel>
-HWY_INLINE void shortIntoTile(const SplatRecord& p, const SplatTile& tile) {
-  const D d;
-  const float perSquare = 1.0f / (p.radius * p.radius);
-  const Span x = spanOf(p.rest[0], p.radius), y = spanOf(p.rest[1], p.radius),
-             z = spanOf(p.rest[2], p.radius);
-  // Squared distances in radii; voxels that are not reached lie at 1, where every kernel is 0.
-  alignas(64) float dy2[kShortEdge], dz2[kLeafEdge];
+/// The voxels that a particle reaches along each axis, relative to its cell.
+struct Reach {
+  Span axis[3];
+
+  explicit HWY_INLINE Reach(const SplatRecord& p) {
+    for (int n = 0; n < 3; ++n) axis[n] = spanOf(p.rest[n], p.radius);
+  }
+  /// Whether no axis reaches over more than four voxels.
+  HWY_INLINE bool isShort() const {
+    return axis[0].high - axis[0].low < kShortEdge && axis[1].high - axis[1].low < kShortEdge &&
+           axis[2].high - axis[2].low < kShortEdge;
+  }
+};
+
+/// Squared distances in radii along an axis; voxels that are not reached lie at 1, where every kernel is 0.
+HWY_INLINE void shortSquares(const Span& span, float rest, float perSquare, float* squares) {
   for (int n = 0; n < kShortEdge; ++n) {
-    const float dy = float(y.low + n) - p.rest[1], dz = float(z.low + n) - p.rest[2];
-    dy2[n] = y.low + n <= y.high ? dy * dy * perSquare : 1.0f;
-    dz2[n] = dz2[n + kShortEdge] = z.low + n <= z.high ? dz * dz * perSquare : 1.0f;
+    const float apart = float(span.low + n) - rest;
+    squares[n] = span.low + n <= span.high ? apart * apart * perSquare : 1.0f;
   }
-  const Row dz = loaded(dz2);
-  Row pairs[2];  // of neighbours along y
-  for (int n = 0; n < 2; ++n) {
-    alignas(64) float both[kLeafEdge];
-    for (int k = 0; k < kLeafEdge; ++k) both[k] = dy2[2 * n + k / kShortEdge];
-    pairs[n] = loaded(both);
-    for (size_t k = 0; k < kParts; ++k) pairs[n].part[k] = hn::Add(pairs[n].part[k], dz.part[k]);
-  }
-  alignas(64) float values[kShortEdge][kShortEdge][kShortEdge];
-  Row total = allEqual(0.0f);
-  for (int n = 0; n <= x.high - x.low; ++n) {
-    const float dx = float(x.low + n) - p.rest[0];
-    const auto aside = hn::Set(d, dx * dx * perSquare);
-    for (int pair = 0; pair < 2; ++pair)
-      for (size_t k = 0; k < kParts; ++k) {
-        const auto value = Kernel::at(hn::Add(pairs[pair].part[k], aside));
-        hn::StoreU(value, d, values[n][2 * pair] + k * kLanes);
-        total.part[k] = hn::Add(total.part[k], value);
-      }
-  }
-  const float scale = float(double(p.scale) / sumOf(total));
-  const TileClip clip(p, x, y, z.low);
-  touch(p, clip, z, tile);
-  for (int xAt = clip.x.low; xAt <= clip.x.high; ++xAt)
-    for (int yAt = clip.y.low; yAt <= clip.y.high; ++yAt)
-      addShort(values[xAt - x.low][yAt - y.low], scale, tileRow(p, clip, xAt, yAt, tile));
 }
 
-/// Whether no axis reaches over more than four voxels.
-HWY_INLINE bool isShort(const SplatRecord& p) {
-  constexpr float kSurely = 1.5f;  // 2r + 1 = 4
-  if (p.radius < kSurely) return true;
-  if (p.radius > 2.0f) return false;
-  for (const float rest : p.rest) {
-    const Span span = spanOf(rest, p.radius);
-    if (span.high - span.low >= kShortEdge) return false;
+/// Σ of a plane, folded in halves, so that it is the same on every target. The values are lost.
+HWY_INLINE float folded(float* values) {
+  for (size_t half = kPlane / 2; half > 0; half /= 2)
+    for (size_t n = 0; n < half; ++n) values[n] += values[n + half];
+  return values[0];
+}
+
+template <class Kernel>
+HWY_INLINE void shortWeights(const SplatRecord& p, const Reach& reach, ShortCube& cube) {
+  const DPlane d;
+  const float perSquare = 1.0f / (p.radius * p.radius);
+  float squares[3][kShortEdge];
+  for (int axis = 0; axis < 3; ++axis) shortSquares(reach.axis[axis], p.rest[axis], perSquare, squares[axis]);
+  alignas(64) float plane[kPlane], total[kPlane];
+  for (size_t n = 0; n < kPlane; ++n) plane[n] = squares[1][n / kShortEdge] + squares[2][n % kShortEdge];
+  hn::Vec<DPlane> values[kShortEdge][kPlane / kPlaneLanes];
+  for (size_t k = 0; k < kPlane / kPlaneLanes; ++k) {
+    const auto aside = hn::Load(d, plane + k * kPlaneLanes);
+    for (int x = 0; x < kShortEdge; ++x)
+      values[x][k] = Kernel::at(d, hn::Add(aside, hn::Set(d, squares[0][x])));
+    hn::Store(hn::Add(hn::Add(values[0][k], values[1][k]), hn::Add(values[2][k], values[3][k])), d,
+              total + k * kPlaneLanes);
   }
-  return true;
+  const auto scale = hn::Set(d, p.scale / folded(total));
+  for (int x = 0; x < kShortEdge; ++x)
+    for (size_t k = 0; k < kPlane / kPlaneLanes; ++k)
+      hn::Store(hn::Mul(values[x][k], scale), d, cube.values[x] + k * kPlaneLanes);
+}
+
+/// The Gaussian is a product of one factor an axis.
+template <>
+HWY_INLINE void shortWeights<Gaussian>(const SplatRecord& p, const Reach& reach, ShortCube& cube) {
+  const DPlane d;
+  const float perSquare = 1.0f / (p.radius * p.radius);
+  alignas(64) float factors[kPlane];  // of three axes, then 1
+  for (int axis = 0; axis < 3; ++axis)
+    shortSquares(reach.axis[axis], p.rest[axis], perSquare, factors + axis * kShortEdge);
+  std::fill_n(factors + 3 * kShortEdge, kShortEdge, 1.0f);
+  for (size_t at = 0; at < kPlane; at += kPlaneLanes)
+    hn::Store(Gaussian::at(d, hn::Load(d, factors + at)), d, factors + at);
+  float product = 1.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* const f = factors + axis * kShortEdge;
+    product *= (f[0] + f[1]) + (f[2] + f[3]);
+  }
+  const float scale = p.scale / product;
+  alignas(64) float plane[kPlane];
+  for (size_t n = 0; n < kPlane; ++n)
+    plane[n] = factors[kShortEdge + n / kShortEdge] * factors[2 * kShortEdge + n % kShortEdge];
+  for (int x = 0; x < kShortEdge; ++x) {
+    const auto along = hn::Set(d, factors[x] * scale);
+    for (size_t k = 0; k < kPlane; k += kPlaneLanes)
+      hn::Store(hn::Mul(hn::Load(d, plane + k), along), d, cube.values[x] + k);
+  }
+}
+
+HWY_INLINE void addShort(const float* values, float* to) {
+  const DShort d;
+  for (size_t k = 0; k < kShortEdge; k += kShortLanes)
+    hn::StoreU(hn::Add(hn::LoadU(d, to + k), hn::Load(d, values + k)), d, to + k);
+}
+
+HWY_INLINE void addCube(const SplatRecord& p, const Reach& reach, const ShortCube& cube,
+                        const SplatTile& tile) {
+  constexpr int kLast = SplatTile::kEdge - 1, kShift = 3;  // leaves of 8 voxels
+  int first[3];
+  for (int axis = 0; axis < 3; ++axis) first[axis] = p.cell[axis] + reach.axis[axis].low;
+  float* const corner = tile.values + (first[0] * SplatTile::kEdge + first[1]) * SplatTile::kPitch +
+                        SplatTile::kBefore + first[2];
+  int low[3], high[3];
+  bool within = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = std::max(first[axis], 0);
+    high[axis] = std::min(p.cell[axis] + reach.axis[axis].high, kLast);
+    if (low[axis] > high[axis]) return;
+    within = within && (axis == 2 || (first[axis] >= 0 && first[axis] + kShortEdge - 1 <= kLast));
+  }
+  // At most two leaves along each axis.
+  for (const int x : {low[0] >> kShift, high[0] >> kShift})
+    for (const int y : {low[1] >> kShift, high[1] >> kShift})
+      for (const int z : {low[2] >> kShift, high[2] >> kShift})
+        tile.touched[(x * SplatTile::kLeaves + y) * SplatTile::kLeaves + z] = 1;
+  if (within) {
+    for (int x = 0; x < kShortEdge; ++x)
+      for (int y = 0; y < kShortEdge; ++y)
+        addShort(cube.values[x] + y * kShortEdge, corner + (x * SplatTile::kEdge + y) * SplatTile::kPitch);
+    return;
+  }
+  for (int x = low[0] - first[0]; x <= high[0] - first[0]; ++x)
+    for (int y = low[1] - first[1]; y <= high[1] - first[1]; ++y)
+      addShort(cube.values[x] + y * kShortEdge, corner + (x * SplatTile::kEdge + y) * SplatTile::kPitch);
 }
 
 template <int kRows>
@@ -200,68 +262,40 @@ HWY_INLINE void gaussianIntoTile(const SplatRecord& p, const SplatTile& tile) {
   }
 }
 
-/// The Gaussian of a particle of at most four voxels along each axis.
-HWY_INLINE void shortGaussianIntoTile(const SplatRecord& p, const SplatTile& tile) {
-  const float perSquare = 1.0f / (p.radius * p.radius);
-  Span span[3];
-  // Four factors an axis; the fourth axis fills the row.
-  alignas(64) float factors[2 * kLeafEdge];
-  for (int axis = 0; axis < 3; ++axis) {
-    span[axis] = spanOf(p.rest[axis], p.radius);
-    for (int n = 0; n < kShortEdge; ++n) {
-      const float apart = float(span[axis].low + n) - p.rest[axis];
-      factors[axis * kShortEdge + n] =
-          span[axis].low + n <= span[axis].high ? apart * apart * perSquare : 1.0f;
-    }
-  }
-  std::fill_n(factors + 3 * kShortEdge, kShortEdge, 1.0f);
-  for (size_t at = 0; at < 2 * kLeafEdge; at += kLanes)
-    hn::StoreU(Gaussian::at(hn::LoadU(D(), factors + at)), D(), factors + at);
-  double product = 1.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float* const f = factors + axis * kShortEdge;
-    product *= (double(f[0]) + double(f[1])) + (double(f[2]) + double(f[3]));
-  }
-  const float scale = float(double(p.scale) / product);
-  const TileClip clip(p, span[0], span[1], span[2].low);
-  touch(p, clip, span[2], tile);
-  for (int x = clip.x.low; x <= clip.x.high; ++x) {
-    const float along = factors[x - span[0].low] * scale;
-    for (int y = clip.y.low; y <= clip.y.high; ++y)
-      addShort(factors + 2 * kShortEdge, along * factors[kShortEdge + y - span[1].low],
-               tileRow(p, clip, x, y, tile));
-  }
-}
-
-template <int kRows>
-HWY_INLINE void oneIntoTile(SplatKernel kernel, const SplatRecord& p, const SplatTile& tile) {
-  if (kernel == SplatKernel::gaussian)
-    gaussianIntoTile<kRows>(p, tile);
-  else if (kernel == SplatKernel::wendland)
-    radialIntoTile<Wendland, kRows>(p, tile);
-  else
-    radialIntoTile<SmoothSphere, kRows>(p, tile);
-}
-
-HWY_INLINE void oneShortIntoTile(SplatKernel kernel, const SplatRecord& p, const SplatTile& tile) {
-  if (kernel == SplatKernel::gaussian)
-    shortGaussianIntoTile(p, tile);
-  else if (kernel == SplatKernel::wendland)
-    shortIntoTile<Wendland>(p, tile);
-  else
-    shortIntoTile<SmoothSphere>(p, tile);
-}
-
-void intoTile(SplatKernel kernel, const SplatRecord* records, size_t count, const SplatTile& tile) {
+template <class Kernel>
+void intoTileWith(const SplatRecord* records, const uint32_t* order, size_t count, const SplatTile& tile) {
   // Up to this radius a particle reaches over 8 voxels at most.
   constexpr float kOneRow = 3.5f;
-  for (size_t n = 0; n < count; ++n)
-    if (isShort(records[n]))
-      oneShortIntoTile(kernel, records[n], tile);
-    else if (records[n].radius <= kOneRow)
-      oneIntoTile<1>(kernel, records[n], tile);
-    else
-      oneIntoTile<2>(kernel, records[n], tile);
+  constexpr bool kSeparable = std::is_same_v<Kernel, Gaussian>;
+  for (size_t n = 0; n < count; ++n) {
+    const SplatRecord& p = records[order[n]];
+    const Reach reach(p);
+    if (reach.isShort()) {
+      ShortCube cube;
+      shortWeights<Kernel>(p, reach, cube);
+      addCube(p, reach, cube, tile);
+    } else if (p.radius <= kOneRow) {
+      if constexpr (kSeparable)
+        gaussianIntoTile<1>(p, tile);
+      else
+        radialIntoTile<Kernel, 1>(p, tile);
+    } else {
+      if constexpr (kSeparable)
+        gaussianIntoTile<2>(p, tile);
+      else
+        radialIntoTile<Kernel, 2>(p, tile);
+    }
+  }
+}
+
+void intoTile(SplatKernel kernel, const SplatRecord* records, const uint32_t* order, size_t count,
+              const SplatTile& tile) {
+  if (kernel == SplatKernel::gaussian)
+    intoTileWith<Gaussian>(records, order, count, tile);
+  else if (kernel == SplatKernel::wendland)
+    intoTileWith<Wendland>(records, order, count, tile);
+  else
+    intoTileWith<SmoothSphere>(records, order, count, tile);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -272,8 +306,9 @@ HWY_AFTER_NAMESPACE();
 namespace nephele {
 HWY_EXPORT(intoTile);
 
-void splatIntoTile(SplatKernel kernel, const SplatRecord* records, size_t count, const SplatTile& tile) {
-  HWY_DYNAMIC_DISPATCH(intoTile)(kernel, records, count, tile);
+void splatIntoTile(SplatKernel kernel, const SplatRecord* records, const uint32_t* order, size_t count,
+                   const SplatTile& tile) {
+  HWY_DYNAMIC_DISPATCH(intoTile)(kernel, records, order, count, tile);
 }
 
 }  // namespace nephele

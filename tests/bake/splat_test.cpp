@@ -259,17 +259,17 @@ TEST(Splat, IsTheSameOnAnyNumberOfThreads) {
   const Cloud wide = randomCloud(1500, 200.0f, 0.3f, 8.0f, 5);
   for (size_t n = 0; n < wide.x.size(); ++n)
     cloud.add({wide.x[n], wide.y[n], wide.z[n]}, wide.radius[n], wide.mass[n]);
-  for (const SplatKernel kernel : kKernels) {
-    SplatSettings settings = everything();
-    settings.kernel = kernel;
-    std::string hashes[3];
-    for (const int threads : {1, 2, 5}) {
-      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
-      hashes[threads / 2] = contentHashOf(splat(cloud.particles(), settings));
+  for (const SplatKernel kernel : kKernels)
+    for (SplatSettings settings : {everything(), plain()}) {
+      settings.kernel = kernel;
+      std::string hashes[3];
+      for (const int threads : {1, 2, 5}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+        hashes[threads / 2] = contentHashOf(splat(cloud.particles(), settings));
+      }
+      EXPECT_EQ(hashes[0], hashes[1]);
+      EXPECT_EQ(hashes[0], hashes[2]);
     }
-    EXPECT_EQ(hashes[0], hashes[1]);
-    EXPECT_EQ(hashes[0], hashes[2]);
-  }
 }
 
 TEST(Splat, IsTheSameOnEveryTarget) {
@@ -277,13 +277,13 @@ TEST(Splat, IsTheSameOnEveryTarget) {
   expectEqualBitsOnEveryTarget([&] {
     std::vector<float> values;
     for (const SplatKernel kernel : kKernels)
-      for (const double shutter : {0.0, 3.0}) {
-        SplatSettings settings = everything();
-        settings.kernel = kernel;
-        settings.shutterSeconds = shutter;
-        const std::string hash = contentHashOf(splat(cloud.particles(), settings));
-        values.insert(values.end(), hash.begin(), hash.end());
-      }
+      for (const double shutter : {0.0, 3.0})
+        for (SplatSettings settings : {everything(), plain()}) {
+          settings.kernel = kernel;
+          settings.shutterSeconds = shutter;
+          const std::string hash = contentHashOf(splat(cloud.particles(), settings));
+          values.insert(values.end(), hash.begin(), hash.end());
+        }
     return values;
   });
 }
