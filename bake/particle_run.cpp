@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <numbers>
 
 #include "bake/particle_sources.h"
+#include "bake/pipeline_particles.h"
 #include "base/figures.h"
 #include "base/files.h"
 
@@ -33,6 +35,7 @@ struct ParticleRun::State {
   std::unique_ptr<Simulation> simulation;
   std::optional<int> viewed;  // the frame that the view shows
   ParticleView view;
+  std::optional<Box> everyFrame;  // the box of all frames, where the recipe asks for one; may be empty
 
   /// "asset 'plume', frame 3: ".
   std::string name() const {
@@ -68,17 +71,22 @@ struct ParticleRun::State {
     }
   }
 
-  void writeCheckpoint(int frame) const {
-    const std::string path = checkpointOf(frame);
-    if (fs::exists(path)) return;
+  void makeFolder() const {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw WorldError("cannot make the folder '" + folder + "': " + error.message());
     removeLeftovers(folder);
+  }
+
+  void writeCheckpoint(int frame) const {
+    const std::string path = checkpointOf(frame);
+    if (fs::exists(path)) return;
+    makeFolder();
+    std::error_code error;
     // Those of other recipes are of no use to anybody.
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
-      if (name.ends_with(".state") && name.substr(0, 12) != key.substr(0, 12))
+      if ((name.ends_with(".state") || name.ends_with(".box")) && name.substr(0, 12) != key.substr(0, 12))
         fs::remove(entry.path(), error);
     }
     const std::string bytes = simulation->save();
@@ -99,6 +107,71 @@ struct ParticleRun::State {
       if (every > 0 && at > 0 && at % every == 0 && simulation->stepsDone() == stepsAt(int(at)))
         writeCheckpoint(int(at));
     }
+  }
+
+  /// What the particles of the view reach, but for the voxel that the smallest are spread over.
+  Box reached() const {
+    const double halfShutter = 0.5 * system.shutter / asset.fps;
+    Box box = nothing();
+    for (size_t n = 0; n < view.size(); ++n) {
+      const glm::dvec3 at(double(view.x[n]), double(view.y[n]), double(view.z[n]));
+      const glm::dvec3 moved =
+          halfShutter * glm::abs(glm::dvec3(double(view.vx[n]), double(view.vy[n]), double(view.vz[n])));
+      box = hull(box, {at - moved - double(view.radius[n]), at + moved + double(view.radius[n])});
+    }
+    return box;
+  }
+
+  /// Beside the checkpoints; keyed by all that the box of all frames depends on.
+  std::string boxFile() const {
+    Hasher hasher;
+    hashParticles(hasher, asset);
+    return (fs::path(folder) / (key.substr(0, 12) + "_" + hasher.hex().substr(0, 12) + ".box")).string();
+  }
+
+  /// The box that an earlier run has left; one that is damaged is as good as none.
+  std::optional<Box> readBox() const {
+    std::ifstream in(boxFile());
+    Box box = nothing();
+    std::string word;
+    if (!(in >> word)) return std::nullopt;
+    if (word == "empty") return box;
+    for (double* value : {&box.low.x, &box.low.y, &box.low.z, &box.high.x, &box.high.y, &box.high.z})
+      if (!(in >> *value)) return std::nullopt;
+    const bool whole = word == "box" && in >> word && word == "end" && !box.empty();
+    return whole ? std::optional(box) : std::nullopt;
+  }
+
+  void writeBox(const Box& box) const {
+    makeFolder();
+    const std::string path = boxFile();
+    writeWhole(path, [&](const std::string& temporary) {
+      std::ofstream out(temporary);
+      out.precision(std::numeric_limits<double>::max_digits10);
+      if (box.empty())
+        out << "empty\n";
+      else
+        out << "box " << box.low.x << ' ' << box.low.y << ' ' << box.low.z << ' ' << box.high.x << ' '
+            << box.high.y << ' ' << box.high.z << " end\n";
+      if (!(out << std::flush)) throw WorldError("cannot write '" + path + "'; is the disk full?");
+    });
+  }
+
+  /// Simulates all frames of the asset, whichever of them are asked for, so that each gets the same box.
+  void findBoxOfAllFrames() {
+    if (everyFrame || !system.stableBox) return;
+    everyFrame = readBox();
+    if (everyFrame) return;
+    Box box = nothing();
+    const FrameRange frames = asset.frames.value_or(FrameRange{0, 0});
+    for (int frame = frames.first; frame <= frames.last; ++frame) {
+      begin(frame);
+      advance(frame);
+      view = simulation->view();
+      box = hull(box, reached());
+    }
+    everyFrame = box;
+    writeBox(box);
   }
 
   SplatSettings splatSettings(const Asset& look) const {
@@ -123,6 +196,8 @@ struct ParticleRun::State {
       settings.erosionAmount = system.erosion;
     }
     if (system.hasBox()) settings.box = Box{system.boxMin, system.boxMax};
+    // A point is spread over the voxels round it; one more keeps the box's corners free of rounding.
+    if (everyFrame && !everyFrame->empty()) settings.box = grown(*everyFrame, 2.0 * look.voxelSize);
     return settings;
   }
 };
@@ -136,7 +211,8 @@ ParticleRun::ParticleRun(const Pipeline& pipeline, const Asset& asset, const std
                        {},
                        nullptr,
                        std::nullopt,
-                       {}}) {
+                       {},
+                       std::nullopt}) {
   for (size_t n = 0; n < asset.particles->emitters.size(); ++n)
     state_->sources.push_back(makeSiteSource(asset.particles->emitters[n], asset.particleFiles[n].path));
 }
@@ -147,6 +223,7 @@ uint64_t ParticleRun::moveTo(std::optional<int> frame) {
   State& s = *state_;
   s.viewed = frame;
   try {
+    s.findBoxOfAllFrames();
     s.begin(frame.value_or(0));
     const uint64_t before = s.simulation->stepsDone();
     s.advance(frame.value_or(0));

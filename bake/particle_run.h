@@ -27,7 +27,8 @@ struct ParticleFrame {
   double secondsSimulate = 0.0, secondsSplat = 0.0;
 };
 
-/// Not thread-safe; frames are cheapest in growing order.
+/// Not thread-safe; frames are cheapest in growing order. With `stable_box` all frames of the asset are
+/// simulated before the first is splatted, unless that box lies beside the checkpoints already.
 class ParticleRun {
  public:
   /// Keeps references to both. Checkpoints lie in `outFolder`/NAME.checkpoints. Throws InputError where a

@@ -50,6 +50,9 @@ void readParticles(const yaml::Node& node, const std::string& folder, FieldReade
 void hashParticles(Hasher& hasher, const Asset& asset) {
   hasher.text(contentOf(*asset.particles));
   hashFiles(hasher, asset);
+  if (!asset.particles->stableBox || !asset.frames) return;
+  hasher.value(asset.frames->first);
+  hasher.value(asset.frames->last);
 }
 
 std::string simulationHash(const Pipeline& pipeline, const Asset& asset) {
@@ -62,6 +65,7 @@ std::string simulationHash(const Pipeline& pipeline, const Asset& asset) {
   moving.grids = plain.grids;
   moving.massTolerance = plain.massTolerance;
   moving.boxMin = moving.boxMax = plain.boxMin;
+  moving.stableBox = plain.stableBox;
   moving.sizeOverLife.clear();
   moving.densityOverLife.clear();
   Hasher hasher;

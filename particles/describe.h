@@ -106,6 +106,7 @@ void describe(Visitor& v, ParticleSystem& s) {
     in.vector("min", s.boxMin, kLengthRange, "world units");
     in.vector("max", s.boxMax, kLengthRange, "world units");
   });
+  v.flag("stable_box", s.stableBox);
   v.integer("checkpoint_every", s.checkpointEvery, Range{0.0, 1e6});
 }
 

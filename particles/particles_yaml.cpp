@@ -165,6 +165,8 @@ void checkTogether(const ParticleSystem& system, Reader& in) {
   if (in.has("box") && !(system.boxMin.x < system.boxMax.x && system.boxMin.y < system.boxMax.y &&
                          system.boxMin.z < system.boxMax.z))
     in.complain("box", "the box's 'min' must lie below its 'max' along every axis");
+  if (system.stableBox && in.has("box"))
+    in.complain("stable_box", "'box' already gives every frame the same box; leave one of the two out");
 }
 
 /// Collects keys in flow style.

@@ -103,6 +103,66 @@ TEST(ParticleRun, LedgerAddsUp) {
   EXPECT_EQ(bake(folder.file("p.yaml"), into(folder.file("again"))).back().ledger->countEmitted, 450u);
 }
 
+// Nothing at first, a puff, and nothing again.
+constexpr const char* kPuff = R"(
+assets:
+  puff:
+    voxel_size: 0.1
+    frames: 1-10
+    particles:
+      emitters: [{ bursts: [[0.1, 60]], particle_radius: 0.25, velocity: [0, 0, 3], spread: 1, life: 0.2 }]
+      shutter: 1
+      grids: [vel]
+)";
+
+TEST(ParticleRun, AStableBoxIsThatOfAllFramesAndLosesNothing) {
+  const ScratchFolder folder;
+  const std::string plain = folder.write("plain.yaml", kPuff);
+  const std::string stable = folder.write("stable.yaml", std::string(kPuff) + "      stable_box: true\n");
+  const auto free = bake(plain, into(folder.file("plain"))), held = bake(stable, into(folder.file("stable")));
+  ASSERT_EQ(held.size(), 10u);
+  const GridInfo first = inspectFile(held[0].file).grids.at(0);
+  int empty = 0, moved = 0;
+  for (size_t n = 0; n < held.size(); ++n) {
+    const FileInfo own = inspectFile(free[n].file), same = inspectFile(held[n].file);
+    for (const GridInfo& grid : same.grids) {
+      EXPECT_EQ(grid.boxMin, first.boxMin) << n << grid.name;
+      EXPECT_EQ(grid.boxMax, first.boxMax) << n << grid.name;
+    }
+    const GridInfo& alone = own.grids.at(0);
+    // Two corners of density 0 are all that it adds.
+    EXPECT_EQ(same.grids.at(0).activeVoxels, alone.activeVoxels + 2u) << n;
+    EXPECT_EQ(held[n].ledger->stored, free[n].ledger->stored) << n;
+    empty += int(alone.activeVoxels == 0);
+    if (alone.activeVoxels == 0) continue;
+    moved += int(alone.boxMin != first.boxMin);
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_GE(alone.boxMin[axis], first.boxMin[axis]) << n;
+      EXPECT_LE(alone.boxMax[axis], first.boxMax[axis]) << n;
+    }
+  }
+  EXPECT_GT(empty, 2);
+  EXPECT_GT(moved, 2);
+  // One frame alone has the box of all, with the box file and without.
+  for (const char* const out : {"stable", "elsewhere"}) {
+    BakeOptions options = into(folder.file(out));
+    options.frames = FrameRange{5, 5};
+    options.force = true;
+    EXPECT_EQ(bake(stable, options).at(0).contentHash, held[4].contentHash) << out;
+  }
+}
+
+TEST(ParticleRun, ADamagedBoxFileIsAsGoodAsNone) {
+  const ScratchFolder folder;
+  const std::string stable = folder.write("stable.yaml", std::string(kPuff) + "      stable_box: true\n");
+  const auto held = bake(stable, into(folder.file("out")));
+  for (const auto& entry : fs::directory_iterator(folder.file("out") + "/puff.checkpoints"))
+    if (entry.path().extension() == ".box") fs::resize_file(entry.path(), fs::file_size(entry.path()) - 6);
+  BakeOptions again = into(folder.file("out"));
+  again.force = true;
+  EXPECT_EQ(hashesOf(bake(stable, again)), hashesOf(held));
+}
+
 TEST(ParticleRun, IsUpToDateUntilTheRecipeChanges) {
   const ScratchFolder folder;
   const std::string recipe = folder.write("p.yaml", kRecipe);

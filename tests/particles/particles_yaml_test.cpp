@@ -88,6 +88,8 @@ TEST(ParticlesYaml, RefusesWhatIsWrong) {
                 "need the neighbours' 'radius'");
   expectRefusal("emitters: [{ rate: 5, axis: [0, 0, 0] }]", "must have a length");
   expectRefusal("emitters: [{ rate: 5 }]\nbox: { min: [0, 0, 0], max: [1, 0, 1] }", "must lie below");
+  expectRefusal("emitters: [{ rate: 5 }]\nstable_box: true\nbox: { min: [0, 0, 0], max: [1, 1, 1] }",
+                "leave one of the two out");
 }
 
 TEST(ParticlesYaml, BirthsAreTheIntegralOfTheRate) {
