@@ -143,6 +143,8 @@ BAKE = [
     wrong_particles(BURST, BURST + ", center: [1e9, 0, 0]", "frame 1: particle 0 at (1e+09", "is beyond voxel 2^30"),
     wrong_particles(BURST, POINTS, "points.csv: error: no such file"),
     wrong_particles(BURST, POINTS, "points.csv:1: error: has no column 'z'", files={"points.csv": "x,y\n1,2\n"}),
+    wrong_particles(BURST, POINTS, "points.csv:2: error: point 0 has the radius 0", files={"points.csv": "x,y,z,radius\n1,2,3,0\n"}),
+    wrong_particles(BURST, POINTS, "points.csv:2: error: point 0 has the life 0", files={"points.csv": "x,y,z,life\n1,2,3,0\n"}),
     wrong_particles(BURST, POINTS, "points.csv:3: error: has 2 columns", files={"points.csv": "x,y,z\n1,2,3\n1,2\n"}),
     wrong_particles(BURST, POINTS, "points.csv:2: error: point 0 has the y nan", files={"points.csv": "x,y,z\n1,nan,3\n"}),
     wrong_particles(BURST, POINTS, "holds no points to emit from", files={"points.csv": "x,y,z\n"}),
