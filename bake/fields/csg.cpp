@@ -32,15 +32,18 @@ struct Intersection : SetFold {
 struct Difference : SetFold {
   static constexpr bool kZeroStays = true;
   static float apply(float a, float b) { return shared::subtractDensity(a, b); }
+  /// It grows with a and falls with b, so its ends are at theirs.
   static Interval join(const Interval& a, const Interval& b) {
-    const Interval held = clamped(b, 0.0, 1.0);
-    // 1 − 0 and 1 − 1 are exact in floats; between lies one rounding.
-    const Interval left = held.exact() && (held.low == 0.0 || held.low == 1.0)
-                              ? Interval{1.0 - held.low, 1.0 - held.low}
-                              : clamped(rounded({1.0 - held.high, 1.0 - held.low}), 0.0, 1.0);
-    return minimum(a, left);
+    return {at(a.low, b.high) * (1.0 - kRoom), at(a.high, b.low) * (1.0 + kRoom)};
   }
   static Box hold(const Box& a, const Box&) { return a; }
+
+ private:
+  static constexpr double kRoom = 1e-6;  // three roundings in floats
+
+  static double at(double a, double b) {
+    return std::max(std::min(a, std::max(a, 1.0) * (1.0 - std::clamp(b, 0.0, 1.0))), 0.0);
+  }
 };
 
 struct SmoothUnion : SetFold {
@@ -83,7 +86,9 @@ FieldRow intersectionRow() {
 
 FieldRow differenceRow() {
   return {"difference",
-          "What is in its first input and in none of the others: min(a, 1 - b), b held within 0 and 1.",
+          "What is in its first input a and in none of the others b: min(a, max(a, 1) (1 - b)), b held "
+          "within 0 and "
+          "1. Where b is 0 nothing is taken away, where it is 1 all.",
           {kInputs},
           buildFold<Difference>};
 }

@@ -155,7 +155,10 @@ TEST(SetOperations, ObeyTheLawsOfFuzzySets) {
   EXPECT_EQ(fold("union", {-3.0, -1.0}), 0.0);
   EXPECT_EQ(fold("intersection", {-3.0, 1.0}), 0.0);
   EXPECT_EQ(fold("difference", {-3.0, 0.0}), 0.0);
-  EXPECT_EQ(fold("difference", {2.0, -3.0}), 1.0) << "what is negative takes nothing away and adds nothing";
+  EXPECT_EQ(fold("difference", {2.0, -3.0}), 2.0) << "what is negative takes nothing away and adds nothing";
+  EXPECT_EQ(fold("difference", {2.5, 0.0}), 2.5) << "where nothing is taken away, density above 1 stays";
+  EXPECT_EQ(fold("difference", {2.5, 1.0}), 0.0);
+  EXPECT_EQ(fold("difference", {2.5, 0.25}), 1.875) << "the complement in a set of density 2.5";
   EXPECT_EQ(fold("difference", {0.5, 7.0}), 0.0) << "a density above 1 takes away all, not more";
 }
 
