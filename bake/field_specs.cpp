@@ -38,15 +38,18 @@ std::optional<Curve> readCurve(const yaml::Node& node, const std::string& what, 
     return std::nullopt;
   }
   Curve curve;
+  bool good = true;
   for (const yaml::NodePtr& item : node.items) {
     const auto point = yaml::readNumbers(*item, "a point of " + what, 2, range, out);
-    if (!point) return std::nullopt;
+    good = good && point;
+    if (!point) continue;
     if (!curve.empty() && (*point)[0] <= curve.back()[0]) {
       out.add(item->where, "the points of " + what + " must have growing first numbers");
-      return std::nullopt;
+      good = false;
     }
     curve.push_back({(*point)[0], (*point)[1]});
   }
+  if (!good) return std::nullopt;
   return curve;
 }
 
@@ -228,7 +231,9 @@ FieldSpecPtr FieldReader::readRow(const FieldRow& row, const yaml::Node& body, c
     out_.add(body.where, rowName + " takes a map of parameters, not " + yaml::describe(body));
     good = false;
   }
-  if (!good || !validate(row, *spec, body)) return nullptr;
+  // Also where something is missing: all that is wrong is told at once.
+  good = validate(row, *spec, body) && good;
+  if (!good) return nullptr;
   for (const auto& [name, children] : spec->children)
     for (const FieldSpecPtr& child : children) {
       spec->height = std::max(spec->height, child->height + 1);
@@ -250,6 +255,8 @@ bool FieldReader::validate(const FieldRow& row, const FieldSpec& spec, const yam
   Complaint complaint;
   try {
     complaint = row.validate(Arguments(spec.values));
+  } catch (const Arguments::Missing&) {  // told already, and needed to go on
+    return false;
   } catch (const InputError& error) {  // in a file that the recipe names
     for (const Diagnostic& d : error.diagnostics()) out_.add(d.where, d.sentence, d.hint);
     return false;

@@ -30,12 +30,16 @@ bool isAssetName(const std::string& name) {
 
 void readFrames(yaml::MapReader& reader, Asset& asset, Diagnostics& out) {
   const yaml::NodePtr node = reader.find("frames");
-  asset.fps = reader.number("fps", asset.fps, kPositive);
+  // Seconds since frame 0 then stay below 10^8, and so precise that fields move on from frame to frame.
+  constexpr Range kFps{0.01, 1e5, false, false};
+  asset.fps = reader.number("fps", asset.fps, kFps);
   if (!node) return;
   const auto text = yaml::readText(*node, "'frames'", out);
   if (!text) return;
   asset.frames = parseFrames(*text);
-  if (!asset.frames) out.add(node->where, "'frames' must read A-B, with 0 <= A <= B, as in 1-48");
+  if (!asset.frames)
+    out.add(node->where,
+            "'frames' must read A-B, with 0 <= A <= B <= " + std::to_string(kLastFrame) + ", as in 1-48");
 }
 
 /// `loop: true` is the frame range; a number is so many frames.
@@ -315,11 +319,12 @@ std::optional<FrameRange> parseFrames(const std::string& text) {
   FrameRange range;
   const char* const end = text.data() + text.size();
   const auto first = std::from_chars(text.data(), end, range.first);
-  if (first.ec != std::errc{} || range.first < 0) return std::nullopt;
+  if (first.ec != std::errc{} || range.first < 0 || range.first > kLastFrame) return std::nullopt;
   if (first.ptr == end) return FrameRange{range.first, range.first};
   if (*first.ptr != '-') return std::nullopt;
   const auto last = std::from_chars(first.ptr + 1, end, range.last);
-  if (last.ec != std::errc{} || last.ptr != end || range.last < range.first) return std::nullopt;
+  if (last.ec != std::errc{} || last.ptr != end || range.last < range.first || range.last > kLastFrame)
+    return std::nullopt;
   return range;
 }
 

@@ -68,7 +68,10 @@ struct Pipeline {
 /// Reads a recipe. Throws InputError with all of its errors.
 Pipeline loadPipeline(const std::string& path);
 
-/// A, B or A-B with A ≤ B, each at least 0. nullopt where the text is something else.
+/// Frames have at most six digits.
+inline constexpr int kLastFrame = 999999;
+
+/// A, B or A-B with A ≤ B, each from 0 to kLastFrame. nullopt where the text is something else.
 std::optional<FrameRange> parseFrames(const std::string& text);
 
 /// Builds the asset's density. Fields that the recipe shares are built once. `context` gives what a bake

@@ -31,7 +31,7 @@ const Parameter* listParameter(const FieldRow& row) {
 
 const Value& Arguments::at(std::string_view name) const {
   const auto found = values_.find(name);
-  NEPHELE_CHECK_EQ(found != values_.end() ? name : std::string_view("no such parameter"), name);
+  if (found == values_.end()) throw Missing{name};
   return found->second;
 }
 

@@ -86,9 +86,14 @@ struct BuildContext {
   int mostOctaves = kAllOctaves;  // of a fractal sum; the rest is left out as if the grid could not hold it
 };
 
-/// Parameters by name, all present, all in range.
+/// Parameters by name, all in range; all present but where a recipe's errors are being collected.
 class Arguments {
  public:
+  /// Thrown where a parameter is asked for that is not there.
+  struct Missing {
+    std::string_view name;
+  };
+
   explicit Arguments(std::map<std::string, Value, std::less<>> values) : values_(std::move(values)) {}
   double number(std::string_view name) const { return std::get<double>(at(name)); }
   int64_t integer(std::string_view name) const { return std::get<int64_t>(at(name)); }
