@@ -11,6 +11,7 @@
 #include "bake/run.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "base/memory.h"
 #include "base/tolerance.h"
 #include "base/version.h"
 #include "volume/difference.h"
@@ -55,8 +56,11 @@ int bake(Command command) {
                                   command.threads > 0 ? size_t(command.threads) : size_t(cores));
   const Pipeline pipeline = loadPipeline(command.pipeline);
   if (!command.report.empty() && command.report != "-") requireWritable(command.report);
+  command.options.memoryBytes = availableMemory();
   if (command.dryRun) {
-    for (const BakeJob& job : selectJobs(pipeline, command.options)) std::cout << job.file << '\n';
+    const std::vector<BakeJob> jobs = selectJobs(pipeline, command.options);
+    checkDomains(pipeline, jobs, command.options);
+    for (const BakeJob& job : jobs) std::cout << job.file << '\n';
     return kExitDone;
   }
   command.options.describeSkipped = !command.report.empty();

@@ -40,6 +40,19 @@ Json massJson(const MassLedger& m) {
           {"particles_alive", m.countAlive}};
 }
 
+Json bandLimitJson(const std::vector<BandLimitNote>& list) {
+  Json notes = Json::array();
+  for (const BandLimitNote& note : list)
+    if (note.squeeze > 0.0)
+      notes.push_back({{"field", note.field}, {"squeeze", note.squeeze}});
+    else
+      notes.push_back({{"field", note.field},
+                       {"octave", note.octave},
+                       {"cell_voxels", note.cellVoxels},
+                       {"weight", note.weight}});
+  return notes;
+}
+
 std::string precisionName(Precision precision) { return precision == Precision::half ? "half" : "float"; }
 
 /// Errors are the largest difference of optical depth over the largest depth, against half the voxel size.
@@ -83,16 +96,7 @@ std::string reportAsJson(const std::vector<BakeRecord>& records) {
     if (!record.skipped) entry["maximum"] = record.maximum;
     entry["mass"] = record.ledger ? massJson(*record.ledger) : Json{{"stored", record.mass}};
     if (record.ledger) entry["seconds"]["simulate"] = record.secondsSimulate;
-    Json notes = Json::array();
-    for (const BandLimitNote& note : record.bandLimit)
-      if (note.squeeze > 0.0)
-        notes.push_back({{"field", note.field}, {"squeeze", note.squeeze}});
-      else
-        notes.push_back({{"field", note.field},
-                         {"octave", note.octave},
-                         {"cell_voxels", note.cellVoxels},
-                         {"weight", note.weight}});
-    entry["band_limit"] = std::move(notes);
+    entry["band_limit"] = record.bandLimit ? bandLimitJson(*record.bandLimit) : Json(nullptr);
     if (!record.velocityHash.empty()) {
       entry["velocity"] = {{"content_hash", record.velocityHash}};
       if (!record.skipped) {

@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 
 #include "bake/velocity.h"
 #include "bake/voxelize.h"
@@ -90,25 +91,44 @@ void describe(const std::string& file, BakeRecord& record) {
   record.peakBytes = peakBytes();
 }
 
-VoxelizeSettings settingsOf(const Asset& asset) {
-  return {asset.voxelSize, asset.cutoff, asset.precision == Precision::half};
+/// What the grid could not hold of a file that is up to date; of one whose tolerance chose the voxels, the
+/// file does not say.
+std::optional<std::vector<BandLimitNote>> bandLimitOf(const Pipeline& pipeline, const BakeJob& job) {
+  if (job.asset->tolerance) return std::nullopt;
+  std::vector<BandLimitNote> notes;
+  if (!job.asset->density) return notes;
+  BuildContext context = contextOf(pipeline, *job.asset, job.frame);
+  context.notes = &notes;
+  buildField(*job.asset->density, context);
+  return notes;
+}
+
+VoxelizeSettings settingsOf(const Asset& asset, const BakeOptions& options) {
+  return {asset.voxelSize, asset.cutoff, asset.precision == Precision::half, options.memoryBytes};
+}
+
+std::string refusalOf(const Asset& asset, const VoxelizeError& error) {
+  return "asset '" + asset.name + "': " + error.what();
 }
 
 [[noreturn]] void refuse(const Asset& asset, const VoxelizeError& error) {
-  throw InputError(asset.where, "asset '" + asset.name + "': " + error.what());
+  throw InputError(asset.where, refusalOf(asset, error));
 }
 
-Velocities fillVelocity(const VectorField& velocity, const Voxelized& density, const Asset& asset) {
+Velocities fillVelocity(const VectorField& velocity, const Voxelized& density, const Asset& asset,
+                        const BakeOptions& options) {
   try {
     return voxelizeVelocity(
-        density, settingsOf(asset),
+        density, settingsOf(asset, options),
         [&](const Lattice& lattice, float* x, float* y, float* z) { velocity.evaluate(lattice, x, y, z); });
   } catch (const VoxelizeError& error) {
     refuse(asset, error);
   }
 }
 
-Voxelized fill(const Field& field, const Asset& asset, const std::string& label, bool quiet) {
+/// Calls work(LeafProgress) with a bar that it moves, and names the asset where the density is refused.
+template <class Work>
+auto withBar(const Asset& asset, const std::string& label, bool quiet, const Work& work) {
   std::unique_ptr<Progress> bar;
   uint64_t drawn = 0;
   std::mutex mutex;
@@ -119,20 +139,24 @@ Voxelized fill(const Field& field, const Asset& asset, const std::string& label,
     drawn = std::max(drawn, leaves);
   };
   try {
-    return voxelize(field, settingsOf(asset), progress);
+    return work(progress);
   } catch (const VoxelizeError& error) {
     refuse(asset, error);
   }
 }
 
-/// Bakes the frame a loop after the asset's first one, and holds it against that.
-LoopSeam measureSeam(const Pipeline& pipeline, const Asset& asset, const Voxelized& first, bool quiet) {
+/// Holds the frame a loop after the asset's first one against that.
+LoopSeam measureSeam(const Pipeline& pipeline, const Asset& asset, const Voxelized& first,
+                     const BakeOptions& options) {
   LoopSeam seam;
   seam.frame = asset.frames->first + int(*asset.loopFrames);
   const FieldPtr field = buildField(*asset.density, contextOf(pipeline, asset, seam.frame));
-  const Voxelized later = fill(*field, asset, asset.name + ": seam", quiet);
-  seam.largestDifference = largestDifference(first, later);
-  seam.contentHash = contentHashOf(later);
+  const DensityChange change =
+      withBar(asset, asset.name + ": seam", options.quiet, [&](const LeafProgress& progress) {
+        return changeFrom(first, *field, settingsOf(asset, options), progress);
+      });
+  seam.largestDifference = change.largestDifference;
+  seam.contentHash = change.contentHash;
   return seam;
 }
 
@@ -149,6 +173,7 @@ void warnOf(const std::string& file, int longestAxis, uint64_t voxelsActive) {
 BakeRecord bakeParticles(const Pipeline& pipeline, const BakeJob& job, const std::string& hash,
                          const Choice* choice, ParticleRun& run) {
   BakeRecord record;
+  record.bandLimit.emplace();
   const ParticleFrame frame = run.frame(job.frame);
   record.secondsSimulate = frame.secondsSimulate;
   record.secondsFill = frame.secondsSplat;
@@ -172,27 +197,30 @@ BakeRecord bakeParticles(const Pipeline& pipeline, const BakeJob& job, const std
 }
 
 BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::string& hash,
-                   const Choice* choice, bool quiet) {
+                   const Choice* choice, const BakeOptions& options) {
   BakeRecord record;
   BuildContext context = contextOf(pipeline, *job.asset, job.frame);
-  context.notes = &record.bandLimit;
+  context.notes = &record.bandLimit.emplace();
   auto start = std::chrono::steady_clock::now();
   const FieldPtr field = buildField(*job.asset->density, context);
-  const Voxelized voxelized = fill(*field, *job.asset, fs::path(job.file).filename().string(), quiet);
+  const Voxelized voxelized = withBar(*job.asset, fs::path(job.file).filename().string(), options.quiet,
+                                      [&](const LeafProgress& progress) {
+                                        return voxelize(*field, settingsOf(*job.asset, options), progress);
+                                      });
   record.secondsFill = secondsSince(start);
   start = std::chrono::steady_clock::now();
   record.contentHash = contentHashOf(voxelized);
   record.secondsHash = secondsSince(start);
   if (job.asset->loopFrames && job.frame == job.asset->frames->first) {
     start = std::chrono::steady_clock::now();
-    record.seam = measureSeam(pipeline, *job.asset, voxelized, quiet);
+    record.seam = measureSeam(pipeline, *job.asset, voxelized, options);
     record.secondsSeam = secondsSince(start);
   }
   std::optional<Velocities> velocities;
   context.notes = nullptr;  // the density has told them
   if (const VectorFieldPtr velocity = buildVelocity(*job.asset, context)) {
     start = std::chrono::steady_clock::now();
-    velocities = fillVelocity(*velocity, voxelized, *job.asset);
+    velocities = fillVelocity(*velocity, voxelized, *job.asset, options);
     record.velocityHash = velocities->contentHash;
     record.largestSpeed = velocities->largestSpeed;
     record.secondsVelocity = secondsSince(start);
@@ -222,8 +250,8 @@ void tell(const BakeRecord& record) {
                   record.secondsFill + record.secondsHash + record.secondsWrite, record.secondsFill,
                   record.secondsWrite);
   std::cerr << line;
-  for (const BandLimitNote& note : record.bandLimit) {
-    if (note.squeeze > 0.0) continue;  // in the report alone
+  for (const BandLimitNote& note : record.bandLimit.value_or(std::vector<BandLimitNote>{})) {
+    if (record.skipped || note.squeeze > 0.0) continue;  // in the report alone
     std::snprintf(line, sizeof line, "  %s: octave %d has %.2f voxels a cell: %s\n", note.field.c_str(),
                   note.octave + 1, note.cellVoxels, note.weight > 0.0 ? "weakened" : "left out");
     std::cerr << line;
@@ -295,6 +323,22 @@ std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& opt
   return mine;
 }
 
+void checkDomains(const Pipeline& pipeline, const std::vector<BakeJob>& jobs, const BakeOptions& options) {
+  Diagnostics out;
+  std::set<const Asset*> checked;
+  for (const BakeJob& job : jobs) {
+    const Asset& asset = *job.asset;
+    if (!asset.density || asset.tolerance || !checked.insert(&asset).second) continue;
+    try {
+      checkDomain(*buildField(*asset.density, contextOf(pipeline, asset, job.frame)),
+                  settingsOf(asset, options));
+    } catch (const VoxelizeError& error) {
+      out.add(asset.where, refusalOf(asset, error));
+    }
+  }
+  out.throwIfAny();
+}
+
 void makeFolder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -303,6 +347,10 @@ void makeFolder(const std::string& folder) {
 
 std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& options) {
   const std::vector<BakeJob> jobs = selectJobs(pipeline, options);
+  std::vector<BakeJob> due;
+  for (const BakeJob& job : jobs)
+    if (options.force || !isUpToDate(job, recipeHash(pipeline, *job.asset, job.frame))) due.push_back(job);
+  checkDomains(pipeline, due, options);
   makeFolder(options.outFolder);
   removeLeftovers(options.outFolder);
   std::vector<BakeRecord> records;
@@ -314,7 +362,10 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
     BakeRecord record;
     if (!options.force && isUpToDate(job, hash)) {
       record.skipped = true;
-      if (options.describeSkipped) describe(job.file, record);
+      if (options.describeSkipped) {
+        describe(job.file, record);
+        record.bandLimit = bandLimitOf(pipeline, job);
+      }
     } else {
       if (job.asset->tolerance) choice = &settle(pipeline, *job.asset, options, choices);
       if (choice) job.asset = &choice->asset;
@@ -323,7 +374,7 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
         if (!run) run = std::make_unique<ParticleRun>(pipeline, *job.asset, options.outFolder);
         record = bakeParticles(pipeline, job, hash, choice, *run);
       } else {
-        record = bakeOne(pipeline, job, hash, choice, options.quiet);
+        record = bakeOne(pipeline, job, hash, choice, options);
       }
     }
     if (choice) record.choice = *choice;

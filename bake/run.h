@@ -2,6 +2,7 @@
 // voxelize, volume, base; no OpenVDB.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct BakeOptions {
   bool force = false;            // also what is up to date
   bool describeSkipped = false;  // read what is up to date, so that its record is whole
   bool quiet = false;            // no progress, no sentences about files
+  uint64_t memoryBytes = std::numeric_limits<uint64_t>::max();  // what a grid may take
 };
 
 /// One file to be.
@@ -56,7 +58,7 @@ struct BakeRecord {
   std::string velocityHash;                          // of the grid vel; empty where there is none
   double largestSpeed = 0.0, secondsVelocity = 0.0;  // world units per second
   double mass = 0.0, maximum = 0.0;
-  std::vector<BandLimitNote> bandLimit;
+  std::optional<std::vector<BandLimitNote>> bandLimit;  // none where it is not known
   std::optional<int64_t> loopFrames;
   std::vector<LoopNote> loopNotes;
   std::optional<MassLedger> ledger;  // of particles
@@ -69,8 +71,13 @@ struct BakeRecord {
 /// and for frames none of which the recipe has.
 std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& options);
 
-/// Bakes what selectJobs() gives. Each file appears whole or not at all; one whose recipe hash, frame and
-/// size are those of this recipe is left as it is. Sentences go to stderr. Throws InputError or WorldError.
+/// Refuses, for all assets at once, densities that no grid can hold (checkDomain, bake/voxelize.h), each at
+/// its first frame among the jobs. Particles and tolerances find their own limits. Throws InputError.
+void checkDomains(const Pipeline& pipeline, const std::vector<BakeJob>& jobs, const BakeOptions& options);
+
+/// Bakes what selectJobs() gives, after checkDomains() of what is not up to date. Each file appears whole or
+/// not at all; one whose recipe hash, frame and size are those of this recipe is left as it is. Sentences go
+/// to stderr. Throws InputError or WorldError.
 std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& options);
 
 /// Makes the folder and those above it where they are missing. Throws WorldError.

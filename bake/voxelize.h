@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -18,23 +19,24 @@ struct VoxelizeSettings {
   double voxelSize = 1.0;  // world units, > 0; sample (0, 0, 0) lies at the world's origin
   double cutoff = 0.001;   // values at or below become inactive and 0
   bool half = true;        // round values to half precision, as the file will store them
+  uint64_t memoryBytes = std::numeric_limits<uint64_t>::max();  // what the grid may take
 };
 
-/// OpenVDB's grid "density", pruned at tolerance 0.
+/// OpenVDB's grid "density", pruned at tolerance 0; where that leaves tiles alone, one leaf of them.
 struct VoxelGrid;
 
 struct Voxelized {
   std::shared_ptr<const VoxelGrid> grid;
   uint64_t voxelsActive = 0;
-  uint64_t gridBytes = 0;  // in memory
-  int longestAxis = 0;     // voxels along the longest side of the active box
-  uint64_t voxelsEvaluated = 0;
-  double mass = 0.0;  // Σ of stored values · voxel volume
+  uint64_t gridBytes = 0;        // in memory
+  int longestAxis = 0;           // voxels along the longest side of the active box
+  uint64_t voxelsEvaluated = 0;  // constant space is not
+  double mass = 0.0;             // Σ of stored values · voxel volume
   double maximum = 0.0;
 };
 
 /// A density that cannot be baked: it fills all of space, is not finite, exceeds what half can hold, or needs
-/// too many voxels. The sentence says which, with the numbers.
+/// too many voxels or too much memory. The sentence says which, with the numbers.
 class VoxelizeError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -43,9 +45,16 @@ class VoxelizeError : public std::runtime_error {
 /// Called from worker threads with the number of leaves done and the number known; may be empty.
 using LeafProgress = std::function<void(uint64_t leaves, uint64_t total)>;
 
-/// Samples the field at the lattice of voxelSize wherever its bounds allow a value above the cutoff. The grid
-/// is the same on any number of threads. A density that is nowhere above the cutoff gives an empty grid.
-/// Throws VoxelizeError.
+/// Throws VoxelizeError where no grid can hold the density: endless or more than 10^12 voxels of box, or
+/// surely more than memoryBytes. That is found from bounds of cubes of 128 voxels, and where these do not
+/// rule it out from 4000 places among them, at most a second or so. What passes may still be refused by
+/// voxelize().
+void checkDomain(const Field& field, const VoxelizeSettings& settings);
+
+/// Samples the field at the lattice of voxelSize wherever its bounds allow a value above the cutoff; where
+/// they leave one value it becomes a tile. The grid is the same on any number of threads. A density that is
+/// nowhere above the cutoff gives an empty grid. Throws VoxelizeError, also as soon as the leaves come to
+/// more than memoryBytes.
 Voxelized voxelize(const Field& field, const VoxelizeSettings& settings, const LeafProgress& progress = {});
 
 /// The grid's content hash (volume/vdb_file.h), 32 hex digits.
@@ -54,8 +63,16 @@ std::string contentHashOf(const Voxelized& voxelized);
 /// The grid as plain bricks.
 BrickVolume bricksOf(const Voxelized& voxelized);
 
-/// The largest |density difference| over all voxels. 0 where the grids' voxels and values are the same.
-double largestDifference(const Voxelized& a, const Voxelized& b);
+/// How a density differs from one that was voxelized.
+struct DensityChange {
+  double largestDifference = 0.0;  // over all voxels, as stored
+  std::string contentHash;         // of the field's own grid
+};
+
+/// Holds `field`, voxelized with the settings, against `grid`, without a second grid: leaves are filled,
+/// compared, hashed and dropped. Throws VoxelizeError.
+DensityChange changeFrom(const Voxelized& grid, const Field& field, const VoxelizeSettings& settings,
+                         const LeafProgress& progress = {});
 
 /// OpenVDB's grid "vel", pruned at tolerance 0.
 struct VelocityGrid;

@@ -13,4 +13,12 @@ struct VelocityGrid {
   openvdb::Vec3SGrid::Ptr grid;
 };
 
+/// Makes one leaf out of a tile where there are tiles alone: Blender 3.4 draws nothing then, and the whole
+/// grid as soon as there is a leaf.
+template <class Tree>
+void keepALeaf(Tree& tree) {
+  if (tree.leafCount() > 0) return;
+  if (const auto tile = tree.cbeginValueOn()) tree.touchLeaf(tile.getCoord());
+}
+
 }  // namespace nephele

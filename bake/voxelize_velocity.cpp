@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "bake/voxelize.h"
@@ -45,21 +46,67 @@ double fillLeaf(Leaf& leaf, const VoxelizeSettings& settings, const Evaluate& ev
 
 }  // namespace
 
+namespace {
+
+/// Blocks of the tree's active tiles, which hold one density and maybe many velocities.
+std::vector<openvdb::Coord> blocksOfTiles(const openvdb::FloatTree& density) {
+  std::vector<openvdb::Coord> blocks;
+  auto tile = density.cbeginValueOn();
+  tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    const openvdb::CoordBBox box = tile.getBoundingBox();
+    for (int x = box.min().x(); x <= box.max().x(); x += kBlockEdge)
+      for (int y = box.min().y(); y <= box.max().y(); y += kBlockEdge)
+        for (int z = box.min().z(); z <= box.max().z(); z += kBlockEdge) blocks.emplace_back(x, y, z);
+  }
+  return blocks;
+}
+
+/// Fills the blocks of tiles, some at a time: a block of one velocity stays a tile. Returns the largest
+/// speed.
+template <class Evaluate>
+double fillBlocks(openvdb::Vec3STree& tree, const std::vector<openvdb::Coord>& blocks,
+                  const VoxelizeSettings& settings, const Evaluate& evaluate) {
+  constexpr size_t kAtATime = 4096;  // 25 MB
+  double largest = 0.0;
+  for (size_t first = 0; first < blocks.size(); first += kAtATime) {
+    const size_t count = std::min(kAtATime, blocks.size() - first);
+    std::vector<std::unique_ptr<Leaf>> leaves(count);
+    std::vector<double> speeds(count);
+    tbb::parallel_for(size_t(0), count, [&](size_t n) {
+      leaves[n] = std::make_unique<Leaf>(blocks[first + n], openvdb::Vec3s(0.0f), true);
+      speeds[n] = fillLeaf(*leaves[n], settings, evaluate);
+    });
+    for (size_t n = 0; n < count; ++n) {
+      largest = std::max(largest, speeds[n]);
+      openvdb::Vec3s value;
+      bool active = true;
+      if (leaves[n]->isConstant(value, active))
+        tree.addTile(1, blocks[first + n], value, true);
+      else
+        tree.addLeaf(leaves[n].release());
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
 Velocities voxelizeVelocity(const Voxelized& density, const VoxelizeSettings& settings,
                             const std::function<void(const Lattice&, float*, float*, float*)>& evaluate) {
   auto grid = makeVelocityGrid(settings.voxelSize, settings.half);
-  grid->setTree(std::make_shared<openvdb::Vec3STree>(density.grid->grid->tree(), openvdb::Vec3s(0.0f),
-                                                     openvdb::TopologyCopy()));
+  const openvdb::FloatTree& densities = density.grid->grid->tree();
+  grid->setTree(
+      std::make_shared<openvdb::Vec3STree>(densities, openvdb::Vec3s(0.0f), openvdb::TopologyCopy()));
   openvdb::Vec3STree& tree = grid->tree();
-  tree.voxelizeActiveTiles();
   std::vector<Leaf*> leaves;
   tree.getNodes(leaves);
   std::vector<double> largest(leaves.size());
   tbb::parallel_for(size_t(0), leaves.size(),
                     [&](size_t n) { largest[n] = fillLeaf(*leaves[n], settings, evaluate); });
+  largest.push_back(fillBlocks(tree, blocksOfTiles(densities), settings, evaluate));
   openvdb::tools::prune(tree);
-  // As with densities: Blender 3.4 wants leaves.
-  if (tree.leafCount() == 0) tree.voxelizeActiveTiles();
+  keepALeaf(tree);
   Velocities velocities;
   for (const double speed : largest) velocities.largestSpeed = std::max(velocities.largestSpeed, speed);
   velocities.contentHash = contentHash(*grid);

@@ -56,8 +56,8 @@ std::map<std::string, std::string> metadataAsText(const openvdb::MetaMap& metada
 /// Content hash of grids (DESIGN.md, section 1, last paragraph): equal for equal content whatever wrote the
 /// file. Empty for value types without a hash (points, strings). In a leaf that has active voxels all 512
 /// values count, since a box sampler reads the inactive ones too; leaves without any and inactive tiles do
-/// not. The same on any number of threads. The tree must be pruned at tolerance 0; values are hashed as
-/// given, so round to half first where half is stored.
+/// not. It is that of the tree pruned at tolerance 0, whether the tree is or not. The same on any number of
+/// threads. Values are hashed as given, so round to half first where half is stored.
 std::string contentHash(const openvdb::GridBase& grid);
 
 }  // namespace nephele

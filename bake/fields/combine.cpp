@@ -57,6 +57,8 @@ class Mix final : public Field {
   void evaluate(const Lattice& lattice, float* values) const override { mixAt(lattice, values); }
   Interval bounds(const Box& box) const override {
     const Interval a = a_->bounds(box), b = b_->bounds(box), t = t_->bounds(box);
+    if (a.isFloat() && b.isFloat() && t.isFloat())
+      return single(mixed(float(a.low), float(b.low), float(t.low)));
     const Interval plain = a + (b - a) * t;
     if (t.low < 0.0 || t.high > 1.0) return plain;
     // A weight in [0, 1] stays between the two; room for the three operations.
@@ -68,6 +70,7 @@ class Mix final : public Field {
   Box support() const override { return support_; }
 
  private:
+  static float mixed(float a, float b, float t) { return a + (b - a) * t; }
   template <class Where>
   void mixAt(const Where& where, float* values) const {
     alignas(kBlockAlignment) float b[kBlockPoints];
@@ -75,7 +78,7 @@ class Mix final : public Field {
     a_->evaluate(where, values);
     b_->evaluate(where, b);
     t_->evaluate(where, t);
-    for (size_t n = 0; n < countOf(where); ++n) values[n] += (b[n] - values[n]) * t[n];
+    for (size_t n = 0; n < countOf(where); ++n) values[n] = mixed(values[n], b[n], t[n]);
   }
   FieldPtr a_, b_, t_;
   Box support_;  // kept, as folds keep theirs
@@ -90,6 +93,7 @@ class Remap final : public Field {
   Interval bounds(const Box& box) const override {
     const Interval v = input_->bounds(box);
     const double p = at(float(v.low)), q = at(float(v.high));
+    if (v.isFloat()) return {p, p};
     // The remap is monotone; its float form errs by a few roundings of its two ends.
     const double room = 1e-6 * (std::abs(to_[0]) + std::abs(to_[1]));
     return {std::min(p, q) - room, std::max(p, q) + room};

@@ -36,7 +36,9 @@ class FoldField final : public Field {
     Interval sum = rule_.startOver(inputs_.front()->bounds(box));
     for (size_t i = 1; i < inputs_.size(); ++i) {
       if (Rule::kZeroStays && sum.low == 0.0 && sum.high == 0.0) break;
-      sum = rule_.join(sum, inputs_[i]->bounds(box));
+      const Interval next = inputs_[i]->bounds(box);
+      sum = sum.isFloat() && next.isFloat() ? single(rule_.apply(float(sum.low), float(next.low)))
+                                            : rule_.join(sum, next);
     }
     return sum;
   }

@@ -12,11 +12,15 @@ struct Interval {
   double high = 0.0;
 
   bool exact() const { return low == high; }
+  /// Whether it is one value, and that a finite float: what float operations make of it is one value too.
+  bool isFloat() const { return exact() && double(float(low)) == low && std::isfinite(low); }
 };
 
+/// The interval of one float.
+inline Interval single(float value) { return {double(value), double(value)}; }
+
 /// Room for the rounding of one float operation whose results lie in the interval: one part in 2^22 of the
-/// larger end, four units in the last place. Exact 0 stays exact, and so does a single value that a float
-/// operation gives exactly.
+/// larger end, four units in the last place. Exact 0 stays exact.
 inline Interval rounded(const Interval& a) {
   constexpr double kFloatRoom = 1.0 / 4194304.0;
   if (a.low == 0.0 && a.high == 0.0) return a;

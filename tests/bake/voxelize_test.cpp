@@ -9,7 +9,9 @@
 #include <filesystem>
 
 #include "tests/bake/field_samples.h"
+#include "tests/scratch_folder.h"
 #include "volume/bricks.h"
+#include "volume/info.h"
 
 namespace nephele::test {
 namespace {
@@ -34,6 +36,68 @@ BrickVolume baked(const Field& field, const VoxelizeSettings& settings) {
   BrickVolume bricks = loadBricks(path);
   std::filesystem::remove(path);
   return bricks;
+}
+
+/// A field without bounds: everything is filled.
+class Unbounded final : public Field {
+ public:
+  explicit Unbounded(FieldPtr field) : field_(std::move(field)) {}
+  void evaluate(const Points& points, float* values) const override { field_->evaluate(points, values); }
+  void evaluate(const Lattice& lattice, float* values) const override { field_->evaluate(lattice, values); }
+  Interval bounds(const Box&) const override { return {-1e30, 1e30}; }
+  Box support() const override { return field_->support(); }
+
+ private:
+  FieldPtr field_;
+};
+
+/// A field between two voxels along each axis, and 0 outside: bounds know both.
+class Cropped final : public Field {
+ public:
+  Cropped(FieldPtr field, double low, double high)
+      : field_(std::move(field)), box_{glm::dvec3(low), glm::dvec3(high)} {}
+  void evaluate(const Points& points, float* values) const override { field_->evaluate(points, values); }
+  Interval bounds(const Box& box) const override {
+    constexpr double kRoom = 0.5;  // nearer than the next voxel
+    if (intersection(box, grown(box_, kRoom)).empty()) return {0.0, 0.0};
+    return field_->bounds(box);
+  }
+  Box support() const override { return box_; }
+
+ private:
+  FieldPtr field_;
+  Box box_;
+};
+
+/// The largest difference over the voxels of a box that holds all of both.
+double largestByVoxel(const BrickVolume& a, const BrickVolume& b) {
+  constexpr int kReach = 90;
+  double largest = 0.0;
+  for (int x = -kReach; x <= kReach; ++x)
+    for (int y = -kReach; y <= kReach; ++y)
+      for (int z = -kReach; z <= kReach; ++z) {
+        const glm::dvec3 at(x, y, z);
+        largest = std::max(largest, std::abs(double(densityAt(a, at)) - double(densityAt(b, at))));
+      }
+  return largest;
+}
+
+template <class Call>
+void expectSentence(const std::string& sentence, const Call& call) {
+  try {
+    call();
+    ADD_FAILURE() << "accepted; expected: " << sentence;
+  } catch (const VoxelizeError& error) {
+    EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << error.what();
+  }
+}
+
+void expectRefusal(const Field& field, const VoxelizeSettings& settings, const std::string& sentence) {
+  expectSentence(sentence, [&] { voxelize(field, settings); });
+}
+
+void expectDomainRefusal(const Field& field, const VoxelizeSettings& settings, const std::string& sentence) {
+  expectSentence(sentence, [&] { checkDomain(field, settings); });
 }
 
 TEST(Voxelize, HoldsEveryVoxelThatExceedsTheCutoffAndNoOther) {
@@ -111,13 +175,104 @@ TEST(Voxelize, AnEmptyDensityGivesAnEmptyGrid) {
   EXPECT_EQ(voxelize(*faint, {0.1, 0.001, true}).voxelsActive, 0u);
 }
 
-void expectRefusal(const Field& field, const VoxelizeSettings& settings, const std::string& sentence) {
-  try {
-    voxelize(field, settings);
-    ADD_FAILURE() << "accepted; expected: " << sentence;
-  } catch (const VoxelizeError& error) {
-    EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << error.what();
+FieldPtr denseBox(double edge, double value) {
+  const FieldPtr box = makeField(
+      "box", {{"size", std::array<double, 3>{edge, edge, edge}}, {"rounding", 0.0}, {"falloff", 0.0}});
+  return makeField("multiply",
+                   {{"inputs", std::vector<FieldPtr>{box, makeField("constant", {{"value", value}})}}});
+}
+
+TEST(Voxelize, ConstantSpaceBecomesTilesWithoutBeingEvaluated) {
+  // 512³ voxels on the tree's own borders: 64 tiles of 128³, one of them opened so that there is a leaf.
+  const FieldPtr inside = denseBox(1000.0, 0.3);
+  const Voxelized result = voxelize(Cropped(inside, -256, 255), {1.0, 0.001, true});
+  EXPECT_EQ(result.voxelsActive, 512ull * 512 * 512);
+  EXPECT_EQ(result.voxelsEvaluated, 0u);
+  EXPECT_LT(result.gridBytes, 4'000'000u);
+  EXPECT_EQ(result.longestAxis, 512);
+  const ScratchFolder folder;
+  writeDensity(folder.file("a.vdb"), result, Provenance{});
+  EXPECT_EQ(inspectFile(folder.file("a.vdb")).grids.front().leaves, 1u) << "Blender draws no tiles alone";
+  constexpr double kStored = 0.300048828125;  // 0.3 as a half
+  EXPECT_EQ(result.maximum, kStored);
+  EXPECT_EQ(result.mass, kStored * 512.0 * 512.0 * 512.0);
+}
+
+TEST(Voxelize, TilesHaveTheContentOfLeavesThatWerePruned) {
+  // Not on the tree's borders: tiles of 8 and 128, and leaves about them.
+  const FieldPtr box = denseBox(300.0, 0.3);
+  const Unbounded unbounded(box);
+  for (const bool half : {true, false}) {
+    const VoxelizeSettings settings{1.0, 0.001, half};
+    const Voxelized tiles = voxelize(*box, settings), leaves = voxelize(unbounded, settings);
+    EXPECT_EQ(contentHashOf(tiles), contentHashOf(leaves));
+    EXPECT_EQ(tiles.voxelsActive, 299ull * 299 * 299);
+    EXPECT_NEAR(tiles.mass, leaves.mass, 1e-6 * leaves.mass);
+    EXPECT_LT(4 * tiles.voxelsEvaluated, leaves.voxelsEvaluated);
   }
+}
+
+TEST(Voxelize, ConstantSpaceIsCutAndRefusedAsLeavesAre) {
+  EXPECT_EQ(voxelize(*denseBox(100.0, 0.001), {1.0, 0.001, true}).voxelsActive, 0u);
+  EXPECT_EQ(voxelize(*denseBox(100.0, 1e-9), {1.0, 0.0, true}).voxelsActive, 0u) << "0 as a half";
+  expectRefusal(*denseBox(100.0, 1e5), {1.0, 0.001, true}, "more than half precision holds");
+  EXPECT_EQ(voxelize(*denseBox(100.0, 1e5), {1.0, 0.001, false}).maximum, 1e5);
+}
+
+TEST(Voxelize, TellsHowAFieldDiffersFromAGrid) {
+  const VoxelizeSettings settings{kVoxel, 0.001, true};
+  const auto ball = [](double x, double radius) {
+    return makeField("sphere",
+                     {{"center", std::array<double, 3>{x, 0, 0}}, {"radius", radius}, {"falloff", 0.5}});
+  };
+  const FieldPtr fields[] = {
+      cloud(), ball(0, 1), ball(2, 0.5), denseBox(2.6, 0.5), denseBox(5.2, 0.75), denseBox(1.0, 0.0)};
+  for (const FieldPtr& before : fields)
+    for (const FieldPtr& after : fields) {
+      const Voxelized a = voxelize(*before, settings), b = voxelize(*after, settings);
+      const DensityChange change = changeFrom(a, *after, settings);
+      EXPECT_EQ(change.contentHash, contentHashOf(b));
+      EXPECT_EQ(change.largestDifference, largestByVoxel(bricksOf(a), bricksOf(b)));
+      EXPECT_EQ(change.largestDifference == 0.0, before == after);
+    }
+}
+
+TEST(Voxelize, RefusesWhatMemoryCannotHold) {
+  VoxelizeSettings settings{0.01, 0.001, true};
+  const FieldPtr ball = makeField("sphere", {{"radius", 1.0}, {"falloff", 1.0}});  // 4.2 M voxels: 18 MB
+  settings.memoryBytes = 100'000'000;
+  checkDomain(*ball, settings);
+  EXPECT_GT(voxelize(*ball, settings).voxelsActive, 4'000'000u);
+  settings.memoryBytes = 10'000'000;
+  expectDomainRefusal(*ball, settings, "of memory, and 0.01 GB are available; use larger voxels");
+  expectRefusal(*ball, settings, "of memory, and 0.01 GB are available; use larger voxels");
+  // Two small balls in a box of 30 GB are let through, as is a box of tiles.
+  const auto at = [](double x) {
+    return makeField("sphere",
+                     {{"center", std::array<double, 3>{x, x, x}}, {"radius", 0.2}, {"falloff", 0.1}});
+  };
+  checkDomain(*makeField("union", {{"inputs", std::vector<FieldPtr>{at(-9), at(9)}}}), settings);
+  checkDomain(*denseBox(20.0, 0.5), {0.01, 0.001, true, 1'000'000'000});
+  // Bounds of noise leave all of the box open; its voxels decide.
+  const FieldPtr noise = makeField("fbm", {{"cell_size", 0.3}});
+  const auto inBox = [&](double lift) {
+    const FieldPtr lifted = makeField(
+        "add", {{"inputs", std::vector<FieldPtr>{noise, makeField("constant", {{"value", lift}})}}});
+    return makeField("multiply", {{"inputs", std::vector<FieldPtr>{denseBox(4.0, 1.0), lifted}}});
+  };
+  settings.memoryBytes = 50'000'000;
+  expectDomainRefusal(*inBox(0.5), settings, "of memory");
+  checkDomain(*inBox(-0.75), settings);
+}
+
+TEST(Voxelize, RefusesDomainsBeforeFilling) {
+  expectDomainRefusal(*makeField("fbm"), {0.1, 0.001, true}, "fills all of space");
+  expectDomainRefusal(*makeField("sphere", {{"radius", 1e4}}), {0.01, 0.001, true}, "8e+18 voxels");
+  expectDomainRefusal(*makeField("sphere", {{"center", std::array<double, 3>{1e9, 0, 0}}}),
+                      {0.1, 0.001, true}, "beyond 2^30");
+  // Just below the limit: 9.3e11 voxels, of which the ball fills half.
+  expectDomainRefusal(*makeField("sphere", {{"falloff", 1.0}}), {0.000205, 0.001, true, 1'000'000'000'000},
+                      "GB of memory");
 }
 
 TEST(Voxelize, RefusesWhatCannotBeBaked) {

@@ -67,6 +67,17 @@ BOMB = "fields:\n  f0: sphere\n" + "".join(f"  f{n}: {{ add: [{', '.join([f'f{n 
 ALIAS_BOMB = "fields:\n  f0: &f0 { sphere: {} }\n" + "".join(
     f"  f{n}: &f{n} {{ add: [{', '.join([f'*f{n - 1}'] * 8)}] }}\n" for n in range(1, 15))
 
+TWO_DOMAINS = """\
+up_axis: z
+assets:
+  a:
+    voxel_size: 0.0001
+    density: sphere
+  b:
+    voxel_size: 0.1
+    density: fbm
+"""
+
 BURST = "bursts: [[0, 40]]"
 POINTS = "shape: points, file: points.csv"
 
@@ -113,6 +124,25 @@ BAKE = [
     wrong(SPHERE, "sphere: { radius: 1 m }", "pipeline.yaml:6:25: error: 'radius' of 'sphere' must be a number, found '1 m'"),
     wrong(SPHERE, "remap: { from: [1, 1], input: sphere }", "pipeline.yaml:6:16: error: both ends of 'from' are equal"),
     wrong("voxel_size: 0.1", "voxel_size: 0.0001", "pipeline.yaml:", "holds 8e+12 voxels (3.2e+04 GB if dense)"),
+    says("bake pipeline.yaml --dry-run", 2, "pipeline.yaml:3:3: error: asset 'a': the density's box holds 8e+12 voxels",
+         "pipeline.yaml:6:3: error: asset 'b': the density fills all of space", recipe=TWO_DOMAINS, note="both assets at once"),
+    says("bake pipeline.yaml", 2, "pipeline.yaml:3:3: error: asset 'a'", "pipeline.yaml:6:3: error: asset 'b'",
+         recipe=TWO_DOMAINS, note="both assets at once"),
+    says("bake pipeline.yaml --dry-run", 2, "pipeline.yaml:3:3: error: asset 'ball': the density fills about ",
+         "GB of memory, and ", "GB are available; use larger voxels",
+         recipe=GOOD_RECIPE.replace("0.1", "0.000205").replace("falloff: 0.5", "falloff: 1.0"), note="9.3e11 voxels"),
+    prints("bake pipeline.yaml --dry-run", "out/ball.vdb", note="two grains in 5e11 voxels", recipe=GOOD_RECIPE.replace(
+        SPHERE, "union: [{ sphere: { radius: 0.2, center: [399, 399, 399] } }, { sphere: { radius: 0.2, center: [-399, -399, -399] } }]")),
+    wrong("    density:", "    fps: 1e-300\n    density:", "pipeline.yaml:5:10: error: 'fps' must be 0.01 to 100000, found 1e-300"),
+    wrong("    density:", "    fps: .inf\n    density:", "pipeline.yaml:5:10: error: 'fps' must be a finite number"),
+    wrong("    density:", "    frames: 1-2147483647\n    density:",
+          "pipeline.yaml:5:13: error: 'frames' must read A-B, with 0 <= A <= B <= 999999"),
+    wrong("    density:", "    frames: 2147483648-2147483649\n    density:", "pipeline.yaml:5:13: error: 'frames' must read A-B"),
+    wrong(SPHERE, "remap: { from: [1, 1], input: { sphere: { radius: 0 } } }", "pipeline.yaml:6:16: error: both ends of 'from'",
+          "pipeline.yaml:6:57: error: 'radius' of 'sphere' must be greater than 0"),
+    wrong(SPHERE, "remap: { from: [1, 1], to: wide, input: sphre }", "pipeline.yaml:6:16: error: both ends of 'from'",
+          "pipeline.yaml:6:34: error: 'to' of 'remap'", "pipeline.yaml:6:47: error: unknown field 'sphre'"),
+    wrong(SPHERE, "height_profile: { curve: [[0, a], [1, b]] }", "pipeline.yaml:6:37: error:", "pipeline.yaml:6:45: error:"),
     says("bake pipeline.yaml", 2, "pipeline.yaml:3:14: error: a field cannot be made of itself: a -> b -> a",
          recipe=with_density("a", "fields:\n  a: { add: [b, 1] }\n  b: { max: [a] }\n"), note="a cycle"),
     says("bake pipeline.yaml", 2, "pipeline.yaml:", "error: nested deeper than 200 levels", recipe=with_density(DEEP),

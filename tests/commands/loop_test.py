@@ -61,6 +61,13 @@ class LoopTest(unittest.TestCase):
         self.assertGreater(min(steps), 0)
         self.assertLess(steps[-1], 2 * max(steps[:-1]), "the step that closes the loop is a jump")
 
+    def test_the_report_of_what_is_up_to_date_says_what_the_grid_could_not_hold(self):
+        command = [programs.BAKE, "pipeline.yaml", "--frames", "3-3", "--report", "-"]
+        baked, skipped = (json.loads(programs.run_well(command, self.folder).stdout)["assets"][0] for _ in range(2))
+        self.assertEqual([baked["skipped"], skipped["skipped"]], [False, True])
+        self.assertIn({"field": "fbm", "octave": 2, "cell_voxels": 2, "weight": 0}, baked["band_limit"])
+        self.assertEqual(baked["band_limit"], skipped["band_limit"])
+
     def test_is_up_to_date_whichever_turn_a_frame_is_in(self):
         programs.run_well([programs.BAKE, "pipeline.yaml", "--frames", "3-3"], self.folder)
         first = programs.info(self.file(3), self.folder)["metadata"]["recipe_hash"]

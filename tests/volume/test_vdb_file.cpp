@@ -217,6 +217,27 @@ TEST(ContentHash, IsTheSameOnAnyNumberOfThreadsAndInAnyOrderOfFilling) {
   for (const std::string& hash : hashes) EXPECT_EQ(hash, hashes[0]);
 }
 
+TEST(ContentHash, IsThatOfThePrunedTree) {
+  const auto hashOf = [](bool voxelized, float last) {
+    const auto grid = randomGrid({-8, -8, -8}, 20);
+    // Tiles of 8, 128 and 4096 voxels, and the last voxel of the largest.
+    grid->tree().addTile(1, {-64, 0, 0}, 0.25f, true);
+    grid->tree().addTile(2, {-256, 0, 0}, 0.5f, true);
+    grid->tree().addTile(3, {4096, 0, 0}, 2.0f, true);
+    if (voxelized) {
+      grid->tree().touchLeaf({-64, 0, 0});
+      grid->tree().touchLeaf({-200, 50, 50});
+      grid->tree().touchLeaf({5000, 300, 300});
+      EXPECT_GT(grid->tree().leafCount(), randomGrid({-8, -8, -8}, 20)->tree().leafCount() + 2);
+    }
+    if (last != 2.0f) grid->tree().setValue({8191, 4095, 4095}, last);
+    return contentHash(*grid);
+  };
+  EXPECT_EQ(hashOf(false, 2.0f), hashOf(true, 2.0f));
+  EXPECT_EQ(hashOf(false, 2.5f), hashOf(true, 2.5f));
+  EXPECT_NE(hashOf(true, 2.0f), hashOf(true, 2.5f));
+}
+
 TEST(ContentHash, EveryUsualTypeHasOneAndPointsHaveNone) {
   initializeOpenVdb();
   // By name from OpenVDB's table: making them by type would instantiate each anew, at seconds of compilation.

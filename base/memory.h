@@ -1,0 +1,12 @@
+// How much memory there is. Depends on nothing.
+#pragma once
+
+#include <cstdint>
+
+namespace nephele {
+
+/// Bytes that the process may still take: what Linux calls available, less where a limit of the process
+/// (RLIMIT_AS) or of its control group is nearer.
+uint64_t availableMemory();
+
+}  // namespace nephele
