@@ -91,51 +91,49 @@ class Mean final : public Flow {
   std::vector<Carrier> carriers_;
 };
 
-/// Derives velocities from the leaves up, each shared field once.
+/// Derives velocities from the leaves up, each shared field once for each size of voxel that it is read with.
 class Derivation {
  public:
-  explicit Derivation(const BuildContext& context) : context_(context) {}
-
   /// nullptr where nothing in the field moves.
-  FlowPtr of(const FieldSpec& spec) {
-    if (const auto known = known_.find(&spec); known != known_.end()) return known->second;
-    return known_[&spec] = derive(spec);
+  FlowPtr of(const FieldSpec& spec, const BuildContext& context) {
+    const std::pair key{&spec, context.voxelSize};
+    if (const auto known = known_.find(key); known != known_.end()) return known->second;
+    return known_[key] = derive(spec, context);
   }
 
  private:
-  FlowPtr derive(const FieldSpec& spec) {
+  FlowPtr derive(const FieldSpec& spec, const BuildContext& context) {
+    const BuildContext inner = spec.row->inner ? spec.row->inner(Arguments(spec.values), context) : context;
     std::vector<std::pair<const FieldSpec*, FlowPtr>> moving;
     for (const auto& [name, children] : spec.children)
       for (const FieldSpecPtr& child : children)
-        if (FlowPtr velocity = of(*child)) moving.emplace_back(child.get(), std::move(velocity));
-    if (moving.empty()) return ownOf(spec);
+        if (FlowPtr velocity = of(*child, inner)) moving.emplace_back(child.get(), std::move(velocity));
+    if (moving.empty()) return ownOf(spec, context);
     const FlowPtr first = moving.front().second;
     if (spec.row->name == "transform")
-      return first->placed(placementOf(Arguments(spec.values), context_), ownSpeed(spec));
+      return first->placed(placementOf(Arguments(spec.values), context), ownSpeed(spec, context));
     if (std::all_of(moving.begin(), moving.end(), [&](const auto& m) { return m.second == first; }))
       return first;
     std::vector<Carrier> carriers;
     for (auto& [child, velocity] : moving)
-      carriers.push_back({buildField(*child, context_), std::move(velocity)});
+      carriers.push_back({buildField(*child, inner), std::move(velocity)});
     return std::make_shared<Mean>(std::move(carriers));
   }
 
   /// Equal speeds are one object, so that they are known as equal.
-  FlowPtr ownOf(const FieldSpec& spec) {
-    const glm::dvec3 speed = ownSpeed(spec);
+  FlowPtr ownOf(const FieldSpec& spec, const BuildContext& context) {
+    const glm::dvec3 speed = ownSpeed(spec, context);
     if (speed == glm::dvec3(0.0)) return nullptr;
     FlowPtr& known = uniform_[{speed.x, speed.y, speed.z}];
     if (!known) known = std::make_shared<Uniform>(speed);
     return known;
   }
 
-  glm::dvec3 ownSpeed(const FieldSpec& spec) const {
-    return spec.row->motion ? meanScroll(spec.row->motion(Arguments(spec.values)), context_)
-                            : glm::dvec3(0.0);
+  static glm::dvec3 ownSpeed(const FieldSpec& spec, const BuildContext& context) {
+    return spec.row->motion ? meanScroll(spec.row->motion(Arguments(spec.values)), context) : glm::dvec3(0.0);
   }
 
-  BuildContext context_;
-  std::map<const FieldSpec*, FlowPtr> known_;
+  std::map<std::pair<const FieldSpec*, double>, FlowPtr> known_;
   std::map<std::array<double, 3>, FlowPtr> uniform_;
 };
 
@@ -148,7 +146,7 @@ VectorFieldPtr buildVelocity(const Asset& asset, const BuildContext& context) {
     return std::make_shared<Components>(std::move(fields));
   }
   if (!asset.velocityFromMotion) return nullptr;
-  if (VectorFieldPtr derived = Derivation(context).of(*asset.density)) return derived;
+  if (VectorFieldPtr derived = Derivation().of(*asset.density, context)) return derived;
   return std::make_shared<Uniform>(glm::dvec3(0.0));
 }
 

@@ -95,6 +95,15 @@ TEST(Velocity, OfSeveralIsTheirMeanByDensity) {
   }
 }
 
+TEST(Velocity, WeighsByWhatTheGridHoldsWithinATransform) {
+  // In the transform a voxel is 1 unit: noise of cells of 1 is left out of the density, and has no say here.
+  expectEverywhere(
+      "    velocity: true\n    density:\n      transform:\n        scale: [0.1, 0.1, 0.1]\n        input:\n"
+      "          add:\n            - perlin: { cell_size: 1, scroll: [50, 0, 0] }\n"
+      "            - perlin: { cell_size: 40, scroll: [0, 50, 0] }\n",
+      {0, 5, 0});
+}
+
 TEST(Velocity, OfACurlIsItsThreeComponents) {
   const auto sample =
       velocityOf("    velocity: { multiply: [2, { curl: { seed: 5 } }] }\n    density: sphere\n");
