@@ -3,6 +3,7 @@
 
 #include "bake/fields/box_tree.h"
 #include "bake/fields/envelope_field.h"
+#include "bake/fields/perlin.h"
 #include "bake/fields/rows.h"
 
 namespace nephele {
@@ -12,6 +13,8 @@ namespace {
 struct Bubble {
   glm::vec3 centre, radii;
   float shortest;
+  int scale;            // 0: the first
+  float weight = 1.0f;  // what the band limit leaves of it
   float distance(const glm::vec3& p) const {
     return shared::distanceToEllipsoid(p - centre, radii, shortest);
   }
@@ -61,7 +64,7 @@ class Grower {
 
   std::vector<Bubble> grow() {
     const glm::vec3 radii(growth_.radii);
-    bubbles_.push_back({glm::vec3(0.0f), radii, std::min({radii.x, radii.y, radii.z})});
+    bubbles_.push_back({glm::vec3(0.0f), radii, std::min({radii.x, radii.y, radii.z}), 0});
     size_t first = 0;
     for (int64_t scale = 0; scale < growth_.scales; ++scale) {
       const size_t end = bubbles_.size();
@@ -80,7 +83,7 @@ class Grower {
       const Bubble on = bubbles_[parent];
       const double size = growth_.ratio * (1.0 + growth_.jitter * (2.0 * dice_.roll() - 1.0));
       bubbles_.push_back({on.centre + glm::vec3(at * glm::dvec3(on.radii)), on.radii * float(size),
-                          on.shortest * float(size)});
+                          on.shortest * float(size), on.scale + 1});
     }
   }
 
@@ -118,6 +121,29 @@ class Grower {
   std::vector<Bubble> bubbles_;
 };
 
+/// The bubbles that the grid can hold: laid on others and under two voxels thick they are left out, under
+/// four weakened. Tells each scale's mean thickness and weight where any of its bubbles was.
+std::vector<Bubble> withinBandLimit(std::vector<Bubble> bubbles, const BuildContext& context) {
+  struct Scale {
+    double count = 0.0, voxels = 0.0, weight = 0.0;
+  };
+  std::vector<Scale> scales(size_t(bubbles.back().scale) + 1);
+  for (Bubble& bubble : bubbles) {
+    const double voxels = 2.0 * double(bubble.shortest) / context.voxelSize;
+    if (bubble.scale > 0) bubble.weight = float(bandLimit(voxels));
+    Scale& scale = scales[size_t(bubble.scale)];
+    scale.count += 1.0;
+    scale.voxels += voxels;
+    scale.weight += double(bubble.weight);
+  }
+  for (size_t n = 0; context.notes && n < scales.size(); ++n)
+    if (const Scale& scale = scales[n]; scale.weight < scale.count)
+      context.notes->push_back(
+          {"cauliflower", int(n), scale.voxels / scale.count, scale.weight / scale.count});
+  std::erase_if(bubbles, [](const Bubble& bubble) { return bubble.weight == 0.0f; });
+  return bubbles;
+}
+
 std::vector<Box> boxesOf(const std::vector<Bubble>& bubbles) {
   std::vector<Box> boxes;
   for (const Bubble& bubble : bubbles) boxes.push_back(boxOf(bubble));
@@ -147,8 +173,9 @@ class Cauliflower final : public Field {
       for (size_t n = 0; n < points.count; ++n)
         values[n] = std::max(
             values[n],
-            shared::envelope(bubble.distance(offset + glm::vec3(points.x[n], points.y[n], points.z[n])),
-                             falloff));
+            bubble.weight *
+                shared::envelope(bubble.distance(offset + glm::vec3(points.x[n], points.y[n], points.z[n])),
+                                 falloff));
     });
   }
 
@@ -162,9 +189,9 @@ class Cauliflower final : public Field {
       const auto distance = [&](const glm::dvec3& p) {
         return double(shared::distanceToEllipsoid(glm::vec3(p), bubble.radii, bubble.shortest));
       };
-      value = maximum(value, envelopeOver({distance(leastMagnitudes(about)) - room,
-                                           distance(greatestMagnitudes(about)) + room},
-                                          falloff_));
+      const Interval whole = envelopeOver(
+          {distance(leastMagnitudes(about)) - room, distance(greatestMagnitudes(about)) + room}, falloff_);
+      value = maximum(value, bubble.weight == 1.0f ? whole : scaled(whole, double(bubble.weight)));
     });
     return value;
   }
@@ -204,7 +231,8 @@ FieldRow cauliflowerRow() {
   return {
       "cauliflower",
       "Bubbles on bubbles, as on a cumulus: an ellipsoid, smaller ones all over it, smaller ones on each "
-      "of those; 1 deep inside any of them, 0 outside all.",
+      "of those; 1 deep inside any of them, 0 outside all. Bubbles finer than the grid can hold are left "
+      "out.",
       {{"center", ParameterType::vector, "Centre of the first.", Value{std::array<double, 3>{0, 0, 0}}, kAny,
         "world units"},
        {"radii", ParameterType::vector, "Half the first one's extent along x, y and z.",
@@ -237,9 +265,11 @@ FieldRow cauliflowerRow() {
         const uint32_t seed = shared::hashCell({int32_t(uint32_t(a.integer("seed"))), 3, 0}, context.seed);
         return std::make_shared<Cauliflower>(
             a.vector("center"), a.number("falloff"),
-            Grower({a.vector("radii"), a.integer("scales"), a.integer("count"), a.number("ratio"),
-                    a.number("jitter"), a.number("upward"), context.upAxis, seed})
-                .grow());
+            withinBandLimit(
+                Grower({a.vector("radii"), a.integer("scales"), a.integer("count"), a.number("ratio"),
+                        a.number("jitter"), a.number("upward"), context.upAxis, seed})
+                    .grow(),
+                context));
       },
       validateCauliflower};
 }

@@ -49,6 +49,35 @@ TEST(Cauliflower, GrowsOutwardsWithEveryScaleAndNoFartherThanTheirSum) {
   }
 }
 
+TEST(Cauliflower, LeavesOutWhatTheGridCannotHoldAndSaysSo) {
+  // Bubbles 2 · 0.42^scale thick without jitter: 2, 0.84, 0.3528, 0.148.
+  const auto at = [](double voxelSize, int64_t scales, std::vector<BandLimitNote>* notes) {
+    return makeField("cauliflower", {{"radii", Vector{1, 1, 1}}, {"jitter", 0.0}, {"scales", scales}},
+                     {voxelSize, 2, 0, notes});
+  };
+  std::vector<BandLimitNote> notes;
+  // In voxels of 0.1176: 17, 7.1, 3 and 1.3.
+  const FieldPtr all = at(0.1176, 3, &notes), two = at(0.1176, 2, nullptr), one = at(0.1176, 1, nullptr),
+                 fine = at(0.01, 2, nullptr);
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[0].field, "cauliflower");
+  EXPECT_EQ(notes[0].octave, 2);
+  EXPECT_NEAR(notes[0].cellVoxels, 3.0, 1e-5);
+  EXPECT_NEAR(notes[0].weight, 0.5, 1e-5);
+  EXPECT_EQ(notes[1].octave, 3);
+  EXPECT_EQ(notes[1].weight, 0.0);
+  std::mt19937_64 random(6);
+  for (int n = 0; n < 5000; ++n) {
+    const glm::dvec3 p = randomPoint(random, 2.0);
+    ASSERT_EQ(valueAt(*all, p), valueAt(*two, p)) << "the finest scale is not there";
+    // Of what the second scale adds, half is left.
+    ASSERT_NEAR(valueAt(*two, p), std::max(valueAt(*one, p), 0.5f * valueAt(*fine, p)), 1e-5f);
+  }
+  notes.clear();
+  at(0.03, 3, &notes);
+  EXPECT_TRUE(notes.empty()) << "all bubbles have four voxels";
+}
+
 TEST(Cauliflower, PrefersTheUpperSideAndFollowsItsSeed) {
   const FieldPtr a = makeField("cauliflower", {{"upward", 1.0}}),
                  b = makeField("cauliflower", {{"upward", 1.0}}),
