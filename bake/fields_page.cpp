@@ -1,7 +1,6 @@
 // The docs page of all fields, with a picture of each. Depends on fields, nodes.h and base.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include "bake/field_examples.h"
 #include "bake/nodes.h"
@@ -72,10 +71,7 @@ void writeFieldsPage(const std::string& folder) {
     writePng((fs::path(folder) / "images" / "fields" / (name + ".png")).string(), sliceOf(name), 1.0f,
              Backdrop{});
   }
-  writeWhole((fs::path(folder) / "fields.md").string(), [](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    if (!(out << pageText() << std::flush)) throw WorldError("cannot write '" + temporary + "'");
-  });
+  writeText((fs::path(folder) / "fields.md").string(), pageText());
 }
 
 }  // namespace nephele

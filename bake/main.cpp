@@ -2,7 +2,6 @@
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <iostream>
 #include <thread>
 
@@ -68,10 +67,7 @@ int bake(Command command) {
   if (command.report == "-")
     std::cout << report;
   else if (!command.report.empty())
-    writeWhole(command.report, [&](const std::string& temporary) {
-      std::ofstream out(temporary, std::ios::binary);
-      if (!(out << report << std::flush)) throw WorldError("cannot write '" + temporary + "'");
-    });
+    writeText(command.report, report);
   return kExitDone;
 }
 

@@ -12,6 +12,7 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "base/error.h"
@@ -91,6 +92,15 @@ void writeWhole(const std::string& path, const std::function<void(const std::str
   // whole anyway.
   const Descriptor folderFile(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (folderFile.number >= 0) ::fsync(folderFile.number);
+}
+
+void writeText(const std::string& path, const std::string& text) {
+  writeWhole(path, [&](const std::string& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) throw WorldError("cannot write '" + path + "'; is the disk full?");
+  });
 }
 
 void requireWritable(const std::string& path) {

@@ -11,6 +11,9 @@ namespace nephele {
 /// goes on. Throws WorldError where the folder cannot be written.
 void writeWhole(const std::string& path, const std::function<void(const std::string& temporary)>& write);
 
+/// The same for a file of text.
+void writeText(const std::string& path, const std::string& text);
+
 /// Throws WorldError where no file can be made in the folder of `path`: asked before long work whose result
 /// goes there.
 void requireWritable(const std::string& path);

@@ -1,10 +1,5 @@
-// Pages. Depends on html.h, files.h.
+// Pages. Depends on html.h.
 #include "base/html.h"
-
-#include <fstream>
-
-#include "base/error.h"
-#include "base/files.h"
 
 namespace nephele {
 
@@ -30,15 +25,6 @@ std::string htmlPage(const std::string& title, const std::string& body) {
          "img{image-rendering:pixelated;width:256px}.knee{font-weight:bold}figure{display:inline-block;"
          "margin:8px}</style><h1>" +
          htmlEscaped(title) + "</h1>\n" + body + "</html>\n";
-}
-
-void writeText(const std::string& path, const std::string& text) {
-  writeWhole(path, [&](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw WorldError("cannot write '" + path + "'");
-  });
 }
 
 }  // namespace nephele

@@ -11,7 +11,4 @@ std::string htmlEscaped(const std::string& text);
 /// A whole page: doctype, style, the title as heading, then `body`, which is taken as it is.
 std::string htmlPage(const std::string& title, const std::string& body);
 
-/// Writes text whole or not at all. Throws WorldError.
-void writeText(const std::string& path, const std::string& text);
-
 }  // namespace nephele

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -268,13 +267,6 @@ std::vector<PointSet::Column> filledColumns(const PointSet& points) {
         column.values == &PointSet::z)
       filled.push_back(column);
   return filled;
-}
-
-void writeText(const std::string& path, const std::string& text) {
-  writeWhole(path, [&](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    if (!(out << text << std::flush)) throw WorldError("cannot write '" + path + "'; is the disk full?");
-  });
 }
 
 }  // namespace

@@ -1,14 +1,12 @@
-// Headless rendering and comparing. Depends on preview, volume, base and nlohmann_json.
+// Headless rendering and comparing. Depends on preview, volume and base.
 #include "preview/render_command.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "base/files.h"
@@ -16,6 +14,7 @@
 #include "preview/measure/compare.h"
 #include "preview/measure/error_request.h"
 #include "preview/method.h"
+#include "preview/render_stats.h"
 #include "preview/resolve.h"
 #include "preview/temperature.h"
 #include "scene/light_model.h"
@@ -76,78 +75,6 @@ void checkOptions(const RenderOptions& options) {
   complaints.throwIfAny();
 }
 
-/// What --error chose and then found, for the last frame.
-struct ErrorReport {
-  ErrorPick pick;
-  NoisyError measured;
-  double secondsChoosing = 0.0, secondsMeasuring = 0.0;
-  size_t waysMeasured = 0;
-  int stride = 1;
-  std::optional<int> bounces;
-};
-
-/// Sums over frames, for --stats.
-struct Totals {
-  int frames = 0;
-  double secondsLoad = 0.0;
-  PictureCost cost;
-  std::optional<ErrorReport> error;
-};
-
-nlohmann::ordered_json jsonOf(const ErrorReport& report, double asked) {
-  nlohmann::ordered_json json{{"asked", asked},
-                              {"method", report.pick.setting.method},
-                              {"setting", report.pick.setting.name},
-                              {"expected", report.pick.error},
-                              {"expected_ms", report.pick.milliseconds},
-                              {"measured", report.measured.relativeRmse},
-                              {"low95", report.measured.low},
-                              {"high95", report.measured.high},
-                              {"every_pixel_of", report.stride},
-                              {"seconds_choosing", report.secondsChoosing},
-                              {"seconds_measuring", report.secondsMeasuring},
-                              {"ways_measured", report.waysMeasured}};
-  json["bounces"] = report.bounces ? nlohmann::ordered_json(*report.bounces) : nlohmann::ordered_json("all");
-  return json;
-}
-
-std::vector<std::string> unphysicalTerms(const LightModel& light) {
-  std::vector<std::string> names;
-  for (const LightTerm& term : termsOf(light))
-    if (term.on && !term.physical) names.emplace_back(term.name);
-  return names;
-}
-
-void writeStats(const std::string& path, const Totals& totals, const Method& method, const ViewedScene& view,
-                double asked) {
-  const double frames = totals.frames;
-  const LightModel light = lightModelOf(view.scene, view.medium);
-  nlohmann::ordered_json stats{{"seconds_load", totals.secondsLoad / frames},
-                               {"ms_per_frame", totals.cost.milliseconds / frames},
-                               {"samples_per_pixel", totals.cost.densitySamplesPerPixel / frames},
-                               {"gpu_bytes", totals.cost.gpuBytes},
-                               {"gpu_volume_bytes", totals.cost.volumeBytes},
-                               {"gpu_texel", totals.cost.texel},
-                               {"bricks_of_level", totals.cost.bricksOfLevel},
-                               {"voxel_pixels", totals.cost.voxelPixels},
-                               {"skips_checked", totals.cost.skipsChecked},
-                               {"skips_wrong", totals.cost.skipsWrong},
-                               {"gl_renderer", method.renderer},
-                               {"seconds_driver", method.secondsDriver},
-                               {"seconds_shaders", method.secondsShaders},
-                               {"look", nameOf(light.look)},
-                               {"not_physical", unphysicalTerms(light)},
-                               {"white_furnace", furnaceValue(light.octaveCount, light.a, light.b)}};
-  if (totals.error) stats["error"] = jsonOf(*totals.error, asked);
-  const std::string text = stats.dump(2) + "\n";
-  writeWhole(path, [&](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw WorldError("cannot write '" + path + "'");
-  });
-}
-
 /// Renders one frame after another; the first one chooses camera, medium and exposure for all, so that
 /// nothing flickers.
 class Sequence {
@@ -182,16 +109,7 @@ class Sequence {
       std::cerr << "noise: " << kPercent * cost.relativeError << "% relative RMSE\n";
     if (!exposureEv_) exposureEv_ = hasExtension(out, ".png") ? exposureFor(options_, picture) : 0.0;
     writePicture(out, std::move(picture), *view_, *exposureEv_, options_.aov);
-    ++totals_.frames;
-    totals_.cost.milliseconds += cost.milliseconds;
-    totals_.cost.densitySamplesPerPixel += cost.densitySamplesPerPixel;
-    totals_.cost.gpuBytes = std::max(totals_.cost.gpuBytes, cost.gpuBytes);
-    totals_.cost.volumeBytes = std::max(totals_.cost.volumeBytes, cost.volumeBytes);
-    totals_.cost.texel = cost.texel;
-    totals_.cost.bricksOfLevel = cost.bricksOfLevel;
-    totals_.cost.voxelPixels = cost.voxelPixels;
-    totals_.cost.skipsChecked += cost.skipsChecked;
-    totals_.cost.skipsWrong += cost.skipsWrong;
+    totals_.add(cost);
     if (view_->scene.march.checkSkips && !isReference())
       std::cerr << "check_skips: of " << cost.skipsChecked << " densities checked, bounds were wrong for "
                 << cost.skipsWrong << '\n';
@@ -203,7 +121,7 @@ class Sequence {
   /// Writes the stats of the frames that were rendered, where there are any.
   void finish() const {
     if (!options_.stats.empty() && totals_.frames > 0)
-      writeStats(options_.stats, totals_, *method_, *view_, options_.error);
+      writeRenderStats(options_.stats, totals_, *method_, *view_, options_.error);
   }
 
  private:
@@ -297,7 +215,7 @@ class Sequence {
   std::optional<double> exposureEv_;
   std::unique_ptr<Method> method_;
   std::unique_ptr<Method> truth_;  // where --error chooses
-  Totals totals_;
+  RenderTotals totals_;
 };
 
 /// A scene file, or the preset of that name where there is no such file.

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "base/files.h"
@@ -102,12 +101,7 @@ std::string writeLiveRecipe(const std::string& folder, const LiveSource& source,
     name = source.name + "_live_" + letter;
   }
   const std::string path = pathOf(), text = recipeOf(source, system, name, frames, scene);
-  writeWhole(path, [&](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw WorldError("cannot write '" + path + "'");
-  });
+  writeText(path, text);
   return path;
 }
 

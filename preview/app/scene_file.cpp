@@ -2,7 +2,6 @@
 #include "preview/app/scene_file.h"
 
 #include <filesystem>
-#include <fstream>
 
 #include "base/files.h"
 
@@ -26,13 +25,7 @@ void saveScene(const std::string& path, const Settings& settings, const Camera& 
   scene.camera = camera;
   scene.cameraUpGiven = true;
   scene.medium = settings.medium;
-  const std::string text = writeScene(scene);
-  writeWhole(path, [&](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw WorldError("cannot write '" + path + "'");
-  });
+  writeText(path, writeScene(scene));
 }
 
 std::string sceneFileFor(const std::string& folder, const std::string& volume) {

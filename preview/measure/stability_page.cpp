@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
@@ -163,12 +162,7 @@ std::vector<std::string> badCells(const StabilityResult& result) {
 std::string writeStability(const std::string& folder, const StabilityResult& result) {
   writeCsv(folder + "/stability.csv", tableOf(result));
   const std::string page = stabilityPage(result), path = folder + "/stability.md";
-  writeWhole(path, [&](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << page;
-    out.close();
-    if (!out) throw WorldError("cannot write '" + path + "'");
-  });
+  writeText(path, page);
   return drawHeatMaps(mapsOf(result), folder, "stability");
 }
 
