@@ -1,4 +1,4 @@
-// Framing and auto-exposure. Depends on scene and volume/bricks.h.
+// Framing and auto-exposure. Depends on scene, volume/bricks.h and gpu/stage_places.h.
 #include "preview/resolve.h"
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "preview/gpu/stage_places.h"
 #include "scene/light_model.h"
 
 namespace nephele {
@@ -81,6 +82,34 @@ Medium exposedMedium(const BrickVolume& bricks) {
   return medium;
 }
 
+std::vector<dvec3> cornersOfBox(const BrickVolume& bricks) {
+  std::vector<dvec3> corners;
+  for (int i = 0; i < 8; ++i) {
+    dvec3 index;
+    for (int axis = 0; axis < 3; ++axis)
+      index[axis] = (i >> axis & 1) != 0 ? bricks.activeMax[axis] : bricks.activeMin[axis] - 1;
+    corners.emplace_back(bricks.worldFromIndex * glm::dvec4(index, 1.0));
+  }
+  return corners;
+}
+
+/// Of the cubes around the stage's things.
+void addStageCorners(const Stage& stage, const dvec3& up, const BrickVolume& bricks,
+                     std::vector<dvec3>& corners) {
+  const StagePlaces places = placesOf(stage, up, bricks);
+  const auto add = [&](const StageThing& thing, const StagePlace& at) {
+    if (!thing.on) return;
+    for (int i = 0; i < 8; ++i) {
+      const auto side = [&](int axis) { return (i >> axis & 1) != 0 ? at.half : -at.half; };
+      corners.push_back(at.centre + side(0) * places.axes.right + side(1) * places.axes.forward +
+                        side(2) * places.axes.up);
+    }
+  };
+  add(stage.chrome, places.chrome);
+  add(stage.grey, places.grey);
+  add(stage.cube, places.cube);
+}
+
 }  // namespace
 
 dvec3 upOf(const BrickVolume& bricks) {
@@ -90,22 +119,22 @@ dvec3 upOf(const BrickVolume& bricks) {
   return bricks.upAxis == 'y' ? dvec3(0.0, 1.0, 0.0) : dvec3(0.0, 0.0, 1.0);
 }
 
-Camera frameCamera(const BrickVolume& bricks, const dvec3& up, double fov, double aspect) {
-  dvec3 corners[8];
-  dvec3 centre(0.0);
-  for (int i = 0; i < 8; ++i) {
-    dvec3 index;
-    for (int axis = 0; axis < 3; ++axis)
-      index[axis] = (i >> axis & 1) != 0 ? bricks.activeMax[axis] : bricks.activeMin[axis] - 1;
-    corners[i] = dvec3(bricks.worldFromIndex * glm::dvec4(index, 1.0));
-    centre += 0.125 * corners[i];
+Camera frameCamera(const BrickVolume& bricks, const dvec3& up, double fov, double aspect,
+                   const Stage& stage) {
+  std::vector<dvec3> corners = cornersOfBox(bricks);
+  if (stage.on) addStageCorners(stage, up, bricks, corners);
+  dvec3 low = corners.front(), high = corners.front();
+  for (const dvec3& corner : corners) {
+    low = glm::min(low, corner);
+    high = glm::max(high, corner);
   }
+  const dvec3 centre = 0.5 * (low + high);
   // From the side, so that a light over either shoulder models the form, 20 degrees round; and from 13
-  // degrees below, as clouds are seen: sky stands behind them.
-  constexpr double kAside = 1.5, kBack = 4.0, kAbove = -0.95;
+  // degrees below, as clouds are seen: sky stands behind them. A stage is seen from above its floor.
+  constexpr double kAside = 1.5, kBack = 4.0, kBelow = -0.95, kAboveFloor = 0.75;
   const dvec3 right(1.0, 0.0, 0.0);
   const dvec3 front = glm::cross(right, up);  // −Y where Z is up, +Z where Y is up
-  const dvec3 from = glm::normalize(kAside * right + kBack * front + kAbove * up);
+  const dvec3 from = glm::normalize(kAside * right + kBack * front + (stage.on ? kAboveFloor : kBelow) * up);
   const double tanY = std::tan(0.5 * fov), tanX = tanY * aspect;
   const dvec3 rightAxis = glm::normalize(glm::cross(up, from)), upAxis = glm::cross(from, rightAxis);
   // A corner is in the picture where its offset across the view is at most its distance along it times the
@@ -123,6 +152,11 @@ Camera frameCamera(const BrickVolume& bricks, const dvec3& up, double fov, doubl
   camera.up = up;
   camera.fov = fov;
   return camera;
+}
+
+bool seesFloorFromBelow(const Camera& camera, const Stage& stage, const dvec3& up,
+                        const BrickVolume& bricks) {
+  return stage.on && stage.floor && glm::dot(camera.position - placesOf(stage, up, bricks).ground, up) < 0.0;
 }
 
 ChosenMedium chooseMedium(const Scene& scene, const BrickVolume& bricks) {
@@ -183,7 +217,7 @@ ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double a
     view.camera = *scene.camera;
     if (!scene.cameraUpGiven) view.camera.up = view.up;
   } else {
-    view.camera = frameCamera(bricks, view.up, Camera{}.fov, aspect);
+    view.camera = frameCamera(bricks, view.up, Camera{}.fov, aspect, scene.stage);
   }
   return view;
 }

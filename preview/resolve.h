@@ -1,5 +1,5 @@
-// What a scene leaves open, decided from the volume: the camera and the medium. Depends on scene and
-// volume/bricks.h.
+// What a scene leaves open, decided from the volume: the camera and the medium. Depends on scene,
+// volume/bricks.h and gpu/stage_places.h.
 #pragma once
 
 #include <string>
@@ -15,8 +15,13 @@ glm::dvec3 upOf(const BrickVolume& bricks);
 
 /// Looks at the centre of the medium's support from the right front and slightly below, as
 /// near as its eight corners stay in the picture with a little margin. An empty volume is a box of two
-/// voxels.
-Camera frameCamera(const BrickVolume& bricks, const glm::dvec3& up, double fov, double aspect);
+/// voxels. Where a stage is on, from slightly above, with its things in the picture.
+Camera frameCamera(const BrickVolume& bricks, const glm::dvec3& up, double fov, double aspect,
+                   const Stage& stage = {});
+
+/// Whether the stage is on, its floor too, and the camera beneath it.
+bool seesFloorFromBelow(const Camera& camera, const Stage& stage, const glm::dvec3& up,
+                        const BrickVolume& bricks);
 
 /// Where a medium comes from.
 enum class MediumSource { scene, file, exposure };

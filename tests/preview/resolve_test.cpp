@@ -48,6 +48,23 @@ TEST(Framing, TheBoxFillsThePictureWithALittleMargin) {
     }
 }
 
+TEST(Framing, AStageIsSeenFromAboveItsFloor) {
+  const BrickVolume bricks = smallVolume();
+  Stage stage;
+  for (const dvec3& up : {dvec3(0, 0, 1), dvec3(0, 1, 0)}) {
+    const Camera plain = frameCamera(bricks, up, 0.6, 1.5, stage);
+    EXPECT_FALSE(seesFloorFromBelow(plain, stage, up, bricks)) << "there is none";
+    stage.on = true;
+    EXPECT_TRUE(seesFloorFromBelow(plain, stage, up, bricks)) << "clouds are framed from below";
+    const Camera raised = frameCamera(bricks, up, 0.6, 1.5, stage);
+    EXPECT_FALSE(seesFloorFromBelow(raised, stage, up, bricks));
+    EXPECT_LT(reachInPicture(bricks, raised, 1.5), 1.0);
+    stage.floor = false;
+    EXPECT_FALSE(seesFloorFromBelow(plain, stage, up, bricks));
+    stage = Stage{};
+  }
+}
+
 TEST(UpAxis, MetadataThenHoudiniThenZ) {
   BrickVolume bricks = smallVolume();
   EXPECT_EQ(upOf(bricks), dvec3(0, 0, 1));
