@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "preview/app/desk.h"
+#include "preview/app/heap.h"
 #include "preview/app/panel.h"
 #include "preview/app/window.h"
 #include "preview/temperature.h"
@@ -114,6 +115,7 @@ class App {
 }  // namespace
 
 int runApp(const AppOptions& options) {
+  keepLargeBlocksApart();
   const int code = App(options).run();
   // Whatever was made on the GPU is gone, or something was leaked.
   NEPHELE_CHECK_EQ(glCounts().made, glCounts().destroyed);

@@ -1,16 +1,15 @@
 // Files, settings and pictures of the desk. Depends on all of preview, volume and nlohmann_json.
 #include "preview/app/desk.h"
 
-#include <malloc.h>
-
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "preview/app/heap.h"
 #include "preview/app/scene_file.h"
 #include "preview/resolve.h"
 #include "preview/temperature.h"
@@ -21,16 +20,6 @@ namespace {
 constexpr size_t kMostUndo = 200;
 constexpr double kNoticeSeconds = 8.0;
 constexpr double kFirstPictureSeconds = 0.03;
-constexpr double kSmoothing = 0.1;      // of the frame rate: the share of the newest frame
-constexpr double kLongestFrame = 0.25;  // beyond it was rest, and no frame
-
-/// Volumes come and go, and glibc keeps what they leave between smaller blocks: with every file the process
-/// would hold a little more.
-void returnFreeMemory() {
-#if defined(__GLIBC__)
-  ::malloc_trim(0);
-#endif
-}
 
 }  // namespace
 
@@ -140,7 +129,11 @@ Screen Desk::screen(int width, int height) const {
   return {0, width, height, state_.kept ? state_.divider : 0.0};
 }
 
-void Desk::show(int width, int height) { viewer_.show(screen(width, height), shown()); }
+void Desk::show(int width, int height) {
+  viewer_.show(screen(width, height), shown());
+  if (viewer_.stats(Side::edited).samples > 0 || std::exchange(shownRestart_, restarts_) == restarts_) return;
+  pace_.shown(std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count());
+}
 
 bool Desk::work(double seconds) {
   int width = 0, height = 0;
@@ -162,10 +155,6 @@ bool Desk::advance(double seconds) {
   const DocumentNews news = document_.advance(seconds);
   takeNews(news);
   const bool moving = advanceLive(seconds) || news.volume != nullptr || window_.flight().any();
-  const double frame = std::min(seconds, kLongestFrame);
-  frameSeconds_ =
-      moving ? (frameSeconds_ > 0.0 ? (1.0 - kSmoothing) * frameSeconds_ + kSmoothing * frame : frame)
-             : frameSeconds_;
   if (noticeSeconds_ > 0.0 && (noticeSeconds_ -= seconds) <= 0.0) {
     state_.notice.clear();
     return true;
@@ -189,7 +178,7 @@ void Desk::takeNews(const DocumentNews& news) {
     if (news.otherFile) exposeOther();
   } catch (const InputError& error) {  // its metadata holds no medium: the one before stays
     say(error.what());
-    firstCamera_ = frameCamera(*news.volume, state_.up, orbit_.camera().fov, aspect());
+    firstCamera_ = framed(*news.volume, orbit_.camera().fov);
     orbit_ = OrbitCamera(firstCamera_);
     restart();
   }
@@ -215,12 +204,11 @@ UiFacts Desk::facts() const {
   UiFacts facts{document_,
                 viewer_.stats(Side::edited),
                 viewer_.gpuBytes(),
-                0.0,
+                pace_.perSecond(),
                 history_.undoSteps(),
                 history_.redoSteps(),
                 {},
                 {}};
-  if (frameSeconds_ > 0.0) facts.framesPerSecond = 1.0 / frameSeconds_;
   facts.warnings = document_.volume().notes;
   if (live_) {
     facts.live =
@@ -243,21 +231,36 @@ void Desk::writeStats() const {
                                      {"samples_per_pixel", lane.densitySamplesPerPixel},
                                      {"noise", lane.noise},
                                      {"gpu_bytes", viewer_.gpuBytes()},
+                                     {"moving_frames", pace_.frames()},
+                                     {"moving_per_second", pace_.perSecond()},
+                                     {"moving_median_ms", 1e3 * pace_.medianSeconds()},
+                                     {"moving_width", lane.quickWidth},
+                                     {"moving_height", lane.quickHeight},
                                      {"gl_objects_made", counts.made},
                                      {"gl_objects_alive", counts.made - counts.destroyed},
                                      {"gl_renderer", glRenderer()}};
-  const std::string text = stats.dump(2) + "\n";
-  writeWhole(options_.render.stats, [&](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw WorldError("cannot write '" + options_.render.stats + "'");
-  });
+  writeText(options_.render.stats, stats.dump(2) + "\n");
+}
+
+Camera Desk::framed(const BrickVolume& volume, double fov) const {
+  return frameCamera(volume, state_.up, fov, aspect(), state_.settings.scene.stage);
 }
 
 void Desk::change(const Settings& before) {
   history_.changed(before);
   restart();
+}
+
+void Desk::riseAboveFloor() {
+  const Stage& stage = state_.settings.scene.stage;
+  const Camera now = orbit_.camera();
+  const auto below = [&](const Camera& camera) {
+    return seesFloorFromBelow(camera, stage, state_.up, viewer_.volume());
+  };
+  if (!firstScene_.camera && below(firstCamera_)) firstCamera_ = framed(viewer_.volume(), now.fov);
+  if (!below(now)) return;
+  orbit_ = OrbitCamera(framed(viewer_.volume(), now.fov));
+  say("the camera was beneath the stage's floor, and stands above it now");
 }
 
 void Desk::takeDrop(const std::string& path) {
@@ -284,7 +287,10 @@ void Desk::adoptScene(const std::string& path) {
   state_.settings.scene = view.scene;
   state_.settings.medium = view.medium;
   state_.settings.environmentMap = view.environmentMap;
-  if (view.scene.camera) orbit_ = OrbitCamera(view.camera);
+  if (view.scene.camera)
+    orbit_ = OrbitCamera(view.camera);
+  else
+    riseAboveFloor();
   change(before);
   history_.rest();
   say("took over the scene of " + std::filesystem::path(path).filename().string());

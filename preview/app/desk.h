@@ -7,6 +7,7 @@
 #include "preview/app/app.h"
 #include "preview/app/bookmarks.h"
 #include "preview/app/document.h"
+#include "preview/app/frame_pace.h"
 #include "preview/app/history.h"
 #include "preview/app/live_session.h"
 #include "preview/app/orbit_camera.h"
@@ -82,7 +83,11 @@ class Desk {
   void followLive();
   bool advanceLive(double seconds);
   void bakeThis();
+  /// Looks at all of it, and at the stage.
+  Camera framed(const BrickVolume& volume, double fov) const;
   void change(const Settings& before);
+  /// Frames anew where the stage, which has just changed, would be seen from beneath its floor.
+  void riseAboveFloor();
   void restart();
   LaneRequest request(const Settings& settings) const;
   std::array<Shown, kSideCount> shown() const;
@@ -104,7 +109,8 @@ class Desk {
   OrbitCamera orbit_;
   double flySpeed_ = 1.0;  // of the distance to the target, a second
   double noticeSeconds_ = 0.0;
-  double frameSeconds_ = 0.0;  // smoothed, while things move
+  FramePace pace_;             // of coarse pictures
+  uint64_t shownRestart_ = 0;  // the last that a coarse picture was shown of
   int width_ = 0, height_ = 0;
   uint64_t restarts_ = 0;
   bool statsKnown_ = false;  // for the picture that is being drawn

@@ -165,9 +165,7 @@ void Desk::actOnCamera(Action action) {
     return;
   }
   const Camera now = orbit_.camera();
-  orbit_ =
-      OrbitCamera(action == Action::frameAll ? frameCamera(viewer_.volume(), state_.up, now.fov, aspect())
-                                             : firstCamera_);
+  orbit_ = OrbitCamera(action == Action::frameAll ? framed(viewer_.volume(), now.fov) : firstCamera_);
   restart();
 }
 
@@ -225,7 +223,10 @@ void Desk::picture(const std::string& extension) {
 }
 
 void Desk::takeWishes(const UiWishes& wishes, const Settings& before, bool held) {
-  if (wishes.settings) change(before);
+  if (wishes.settings) {
+    if (before.scene.stage != state_.settings.scene.stage) riseAboveFloor();
+    change(before);
+  }
   if (!held && !window_.dragging()) history_.rest();
   if (wishes.picture) restart();
   for (const Action action : wishes.actions) act(action);

@@ -24,7 +24,7 @@ std::string figures(const UiFacts& facts) {
     used += std::snprintf(text.data() + used, text.size() - static_cast<size_t>(used), format, values...);
   };
   if (s.samples == 0) {
-    add("%.0f ms", s.quickMilliseconds);
+    add("%.0f ms  %dx%d", s.quickMilliseconds, s.quickWidth, s.quickHeight);
     if (facts.framesPerSecond > 0.0) add("  %.0f fps", facts.framesPerSecond);
   } else {
     add("%.0f ms  %u", s.sampleMilliseconds, s.samples);

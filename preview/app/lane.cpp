@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "preview/app/noise_estimate.h"
 #include "preview/gpu/camera_rays.h"
@@ -69,8 +70,12 @@ void Lane::drawQuick(const LaneTools& tools) {
   finishGl("marching a moving picture");
   const double seconds = secondsSince(start);
   stats_.quickMilliseconds = seconds * 1e3;
-  if (seconds > kQuickSecondsHigh) divisor_ = std::min(divisor_ + 1, kMostDivisor);
-  if (seconds < kQuickSecondsLow) divisor_ = std::max(divisor_ - 1, 1);
+  stats_.quickWidth = width;
+  stats_.quickHeight = height;
+  // A single frame tells little: the first one waits for the driver's compiler, others for other programs.
+  const double before = std::exchange(quickSeconds_, seconds);
+  if (std::min(seconds, before) > kQuickSecondsHigh) divisor_ = std::min(divisor_ + 1, kMostDivisor);
+  if (std::max(seconds, before) < kQuickSecondsLow) divisor_ = std::max(divisor_ - 1, 1);
   if (!scaleKnown_) chooseScale(*quick_);
   quickNeeded_ = false;
 }

@@ -34,7 +34,8 @@ struct LaneTools {
 
 /// Head-up figures of one picture.
 struct LaneStats {
-  double quickMilliseconds = 0.0;   // the last coarse frame
+  double quickMilliseconds = 0.0;  // the last coarse frame
+  int quickWidth = 0, quickHeight = 0;
   double sampleMilliseconds = 0.0;  // one whole sample of every pixel at rest
   double raysCutShort = 0.0;  // by the driver, of the samples so far: the picture is wrong where it is not 0
   double densitySamplesPerPixel = 0.0;  // densities read for one sample of every pixel; 0 until one is whole
@@ -74,6 +75,7 @@ class Lane {
 
   LaneRequest request_;
   int divisor_ = 2;  // of the coarse picture's sides; follows from the time that it takes
+  double quickSeconds_ = 0.02;  // that the last one took; before any, about what it should take
   bool quickNeeded_ = false;
   bool scaleKnown_ = false;  // for the view that is shown
   std::optional<Film> quick_;

@@ -44,9 +44,9 @@ void mainPanel(UiState& state, const UiFacts& facts, UiWishes& wishes) {
   if (ImGui::Begin("Nephele", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
     ImGui::PushItemWidth(-kLabelShare * width);
     fileParts(state, facts, wishes);
-    viewParts(state, facts, wishes);
+    lightParts(state, facts, wishes);
     liveParts(state, facts, wishes);
-    lightParts(state, wishes);
+    viewParts(state, facts, wishes);
     ImGui::PopItemWidth();
   }
   ImGui::End();

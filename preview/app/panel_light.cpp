@@ -1,4 +1,5 @@
-// Lights, environment, medium, orders of scattering, stage. Depends on imgui, scene and app/orbit_camera.h.
+// Presets, lights, environment, medium, orders of scattering. Depends on imgui, scene, app/orbit_camera.h and
+// gpu/stage_places.h.
 #include <imgui.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "preview/app/orbit_camera.h"
 #include "preview/app/panel_parts.h"
 #include "preview/app/widgets.h"
+#include "preview/gpu/stage_places.h"
 #include "preview/resolve.h"
 #include "scene/light_model.h"
 #include "scene/presets.h"
@@ -99,6 +101,16 @@ bool environmentWidgets(Environment& environment) {
   return ImGui::Checkbox("in every picture", &environment.show) || changed;
 }
 
+/// Behind window and PNG, in place of the environment.
+bool backdropWidgets(std::optional<BackdropColours>& backdrop) {
+  bool given = backdrop.has_value();
+  bool changed = ImGui::Checkbox("plain background", &given);
+  if (changed) backdrop = given ? std::optional(BackdropColours{}) : std::nullopt;
+  if (!backdrop) return changed;
+  changed |= widgets::light("bottom", backdrop->bottom);
+  return widgets::light("top", backdrop->top) || changed;
+}
+
 bool mediumWidgets(Medium& medium) {
   constexpr double kMostG = 0.99;
   bool changed = widgets::amounts("scattering", medium.sigmaS);
@@ -164,6 +176,7 @@ bool emissionWidgets(Emission& emission) {
   bool changed = ImGui::Combo("emission", &state, kStates);
   if (changed) emission.on = state == 0 ? Switch{} : Switch{state == 1};
   if (emission.on == Switch{false}) return changed;
+  ImGui::TextDisabled("from the grid '%s'", emission.grid.c_str());
   changed |= widgets::amount("scale", emission.scale);
   return widgets::amount("kelvin per unit", emission.temperatureScale) || changed;
 }
@@ -204,55 +217,6 @@ bool termWidgets(Scene& scene, const Medium& medium) {
   return changed;
 }
 
-bool thingWidgets(const char* label, StageThing& thing, const char* size) {
-  constexpr double kSpeed = 0.01, kFirstSize = 0.3;  // world units a pixel; where the cloud has chosen so far
-  ImGui::PushID(label);
-  bool changed = ImGui::Checkbox(label, &thing.on);
-  bool placed = thing.center.has_value();
-  if (thing.on && ImGui::Checkbox("placed", &placed)) {
-    thing.center = placed ? std::optional<glm::dvec3>(glm::dvec3(0.0)) : std::nullopt;
-    changed = true;
-  }
-  if (thing.on && thing.center) changed |= widgets::position("center", *thing.center, kSpeed);
-  bool sized = thing.size.has_value();
-  if (thing.on && ImGui::Checkbox("sized", &sized)) {
-    thing.size = sized ? std::optional<double>(kFirstSize) : std::nullopt;
-    changed = true;
-  }
-  if (thing.on && thing.size) changed |= widgets::slider(size, *thing.size, 1e-3, 1e3, "%.3g", true);
-  ImGui::PopID();
-  return changed;
-}
-
-/// An open value: a checkbox for whether it is given, and where it is, the number.
-bool openWidget(const char* label, std::optional<double>& value, double first, double low, double high,
-                bool logarithmic) {
-  bool given = value.has_value();
-  ImGui::PushID(label);
-  bool changed = ImGui::Checkbox(label, &given);
-  if (changed) value = given ? std::optional<double>(first) : std::nullopt;
-  if (value) changed |= widgets::slider("##value", *value, low, high, "%.3g", logarithmic);
-  ImGui::PopID();
-  return changed;
-}
-
-bool stageWidgets(Stage& stage) {
-  bool changed = ImGui::Checkbox("stage", &stage.on);
-  if (!stage.on) return changed;
-  constexpr double kHigh = 1e3, kSmall = 1e-3, kFirstEdge = 0.5, kSharpest = 64.0;
-  changed |= ImGui::Checkbox("floor", &stage.floor);
-  if (stage.floor) {
-    changed |= openWidget("height given", stage.height, 0.0, -kHigh, kHigh, false);
-    changed |= openWidget("squares given", stage.checker, kFirstEdge, kSmall, kHigh, true);
-  }
-  changed |= thingWidgets("chrome ball", stage.chrome, "radius");
-  changed |= thingWidgets("grey ball", stage.grey, "radius");
-  changed |= thingWidgets("chrome cube", stage.cube, "edge");
-  changed |= ImGui::Checkbox("highlights", &stage.highlights);
-  changed |= widgets::slider("shadow sharpness", stage.penumbra, 0.0, kSharpest, "%.1f");
-  return changed;
-}
-
 bool presetWidgets(Scene& scene, const glm::dvec3& up) {
   bool changed = false;
   for (const Preset& preset : presets()) {
@@ -269,14 +233,21 @@ bool presetWidgets(Scene& scene, const glm::dvec3& up) {
 
 }  // namespace
 
-void lightParts(UiState& state, UiWishes& wishes) {
+void lightParts(UiState& state, const UiFacts& facts, UiWishes& wishes) {
+  constexpr double kMostEv = 16.0;
   Scene& scene = state.settings.scene;
   bool changed = presetWidgets(scene, state.up);
+  changed |= widgets::slider("exposure", state.settings.exposureEv, -kMostEv, kMostEv, "%.2f EV");
   widgets::group("Lights", true, [&] { changed |= lightWidgets(scene.lights, state.up); });
-  widgets::group("Environment", false, [&] { changed |= environmentWidgets(scene.environment); });
+  widgets::group("Environment", false, [&] {
+    changed |= environmentWidgets(scene.environment);
+    changed |= backdropWidgets(scene.backdrop);
+  });
   widgets::group("Medium", false, [&] { changed |= mediumWidgets(state.settings.medium); });
   widgets::group("Light in the cloud", false, [&] { changed |= termWidgets(scene, state.settings.medium); });
-  widgets::group("Stage", false, [&] { changed |= stageWidgets(scene.stage); });
+  widgets::group("Stage", false, [&] {
+    changed |= stageWidgets(scene.stage, placesOf(scene.stage, state.up, facts.document.volume()));
+  });
   wishes.settings |= changed;
 }
 

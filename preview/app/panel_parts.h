@@ -1,13 +1,16 @@
 // The panel's parts, each a file. They build widgets between ImGui's NewFrame and Render. Depends on
-// app/ui_state.h.
+// app/ui_state.h and gpu/stage_places.h.
 #pragma once
 
 #include "preview/app/ui_state.h"
+#include "preview/gpu/stage_places.h"
 
 namespace nephele {
 
-/// Lights, environment, medium and orders of scattering.
-void lightParts(UiState& state, UiWishes& wishes);
+/// Presets, exposure, lights, environment, medium, orders of scattering and stage.
+void lightParts(UiState& state, const UiFacts& facts, UiWishes& wishes);
+/// `places`: where its things stand now. Returns whether anything was changed.
+bool stageWidgets(Stage& stage, const StagePlaces& places);
 /// March, view, split and goal at rest.
 void viewParts(UiState& state, const UiFacts& facts, UiWishes& wishes);
 /// Live particles and all their parameters; nothing where the file carries none.

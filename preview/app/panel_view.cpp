@@ -16,6 +16,10 @@ bool cacheWidgets(MarchSettings& march) {
   if (!march.lightCache) return changed;
   changed |= widgets::slider("light every", march.cacheVoxels, 1.0, kBlock, "%.2f voxels");
   changed |= widgets::slider("sky every", march.skyCacheVoxels, 1.0, kBlock, "%.2f voxels");
+  constexpr double kMostDepth = 10.0;
+  changed |= widgets::slider("marched above", march.cacheDepth, 0.0, kMostDepth, "%.2f a voxel", true);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("optical depth of a mean voxel above which suns and points are marched for at rest");
   changed |= widgets::slider("marched first", march.cacheNearVoxels, 0.0, kBlock, "%.1f voxels");
   changed |=
       ImGui::SliderInt("in steps", &march.cacheNearSteps, 0, kMostSteps, "%d", ImGuiSliderFlags_AlwaysClamp);
@@ -80,8 +84,6 @@ void splitWidgets(UiState& state, UiWishes& wishes) {
 }  // namespace
 
 void viewParts(UiState& state, const UiFacts& facts, UiWishes& wishes) {
-  constexpr double kMostEv = 16.0;
-  wishes.settings |= widgets::slider("exposure", state.settings.exposureEv, -kMostEv, kMostEv, "%.2f EV");
   widgets::group("View", false, [&] {
     wishes.picture |= viewWidgets(state);
     splitWidgets(state, wishes);

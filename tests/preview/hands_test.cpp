@@ -8,6 +8,7 @@
 #include <set>
 
 #include "preview/app/bookmarks.h"
+#include "preview/app/frame_pace.h"
 #include "preview/app/keys.h"
 #include "preview/app/noise_estimate.h"
 #include "preview/app/scene_file.h"
@@ -146,6 +147,30 @@ TEST(SceneFile, LeavesARecipeAlone) {
   const ScratchFolder folder;
   const std::string path = folder.write("a.scene.yaml", "assets: {}\nscene: { look: physical }\n");
   EXPECT_THROW(saveScene(path, {}, {}), InputError);
+}
+
+TEST(FramePace, CountsFramesOfTheLastRunAlone) {
+  FramePace pace;
+  EXPECT_EQ(pace.perSecond(), 0.0);
+  EXPECT_EQ(pace.medianSeconds(), 0.0);
+  for (int i = 0; i < 11; ++i) pace.shown(1.0 + 0.05 * i);
+  EXPECT_EQ(pace.frames(), 11u);
+  EXPECT_NEAR(pace.perSecond(), 20.0, 1e-9);
+  EXPECT_NEAR(pace.medianSeconds(), 0.05, 1e-9);
+  // A second of rest is no frame. Of three times one is long: the mean knows, the median does not.
+  const double after = 2.5;
+  for (const double at : {0.0, 0.01, 0.02, 0.13}) pace.shown(after + at);
+  EXPECT_EQ(pace.frames(), 4u);
+  EXPECT_NEAR(pace.perSecond(), 3.0 / 0.13, 1e-9);
+  EXPECT_NEAR(pace.medianSeconds(), 0.01, 1e-9);
+}
+
+TEST(FramePace, KeepsTheNewestTimes) {
+  FramePace pace;
+  double now = 0.0;
+  for (int i = 0; i < 1000; ++i) pace.shown(now += 0.2);
+  for (int i = 0; i < 1025; ++i) pace.shown(now += 0.01);
+  EXPECT_NEAR(pace.medianSeconds(), 0.01, 1e-9) << "of the 1024 newest";
 }
 
 }  // namespace

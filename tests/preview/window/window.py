@@ -41,14 +41,15 @@ def under_xvfb():
 class Window:
     """One run of the previewer in a folder."""
 
-    def __init__(self, program, folder, file, *options, size=(240, 160)):
+    def __init__(self, program, folder, file, *options, size=(240, 160), scene="light.yaml"):
+        """`scene`: QUICK_LIGHT where it is left out; None: the one that files open in."""
         self.folder = folder
         (folder / "light.yaml").write_text(QUICK_LIGHT)
         self.log_path = folder / "preview.log"
         self.log = open(self.log_path, "wb")
         self.size = size
         self.process = subprocess.Popen([program, str(file), "--window-size", f"{size[0]}x{size[1]}",
-                                         "--stats", "stats.json", "--scene", "light.yaml", *options],
+                                         "--stats", "stats.json", *(["--scene", scene] if scene else []), *options],
                                         cwd=folder, stderr=self.log, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
         self.screen = x11.Screen()
         self.stats_path = folder / "stats.json"

@@ -116,6 +116,7 @@ def drops(folder):
     (folder / "text.vdb").write_text("no volume")
     (folder / "scene.yaml").write_text("lights: []\nenvironment: { constant: [0, 0, 0], show: true }\n")
     (folder / "wrong.yaml").write_text("lihgts: []\n")
+    (folder / "stage.yaml").write_text("stage: {}\n")
     w = open_window(folder, "ball.vdb")
     first = w.picture()
     for name, sentence in (("text.vdb", "text.vdb: error"), ("surface.vdb", "no float grid that is a fog volume"),
@@ -133,6 +134,8 @@ def drops(folder):
     w.until(lambda: w.picture().mean() < 5.0, "a scene without light is not black")
     w.key("ctrl+z")
     w.until(lambda: w.picture().mean() > 20.0, "undo does not bring the scene before back")
+    w.drop(folder / "stage.yaml")  # clouds are framed from below, and a floor would hide them
+    w.until_said("beneath the stage's floor, and stands above it now")
     assert w.end() == 0
 
 
