@@ -6,44 +6,66 @@
 namespace nephele {
 namespace {
 
-/// False where no voxel of the leaf can be within reach of the line that the particle is drawn along.
-bool mayReach(const SplatFrame& f, const glm::ivec3& origin) {
-  constexpr float kToCentre = 3.5f, kToCorner = 6.0622f;  // half of 7 voxels, and √3 of that
-  float apart[3], dotted = 0.0f, length = 0.0f;
+/// The squared distance, in voxels, from a place relative to the particle's centre to the line that it is
+/// drawn along.
+float squaredFromLine(const SplatShape& shape, const float apart[3]) {
+  float dotted = 0.0f, length = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
-    apart[axis] = float(origin[axis] - f.record.cell[axis]) + kToCentre - f.record.rest[axis];
-    dotted += apart[axis] * f.shape.stretch[axis];
-    length += f.shape.stretch[axis] * f.shape.stretch[axis];
+    dotted += apart[axis] * shape.stretch[axis];
+    length += shape.stretch[axis] * shape.stretch[axis];
   }
   const float t = length > 0.0f ? std::clamp(dotted / length, -0.5f, 0.5f) : 0.0f;
   float squared = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
-    const float e = apart[axis] - t * f.shape.stretch[axis];
+    const float e = apart[axis] - t * shape.stretch[axis];
     squared += e * e;
   }
-  const float reach = (f.record.radius + kToCorner) * 1.001f;  // room for rounding
-  return squared <= reach * reach;
+  return squared;
+}
+
+// Distances are compared with a little room for rounding.
+constexpr float kRoom = 1.001f;
+
+/// False where no voxel of the leaf can be within reach of the line that the particle is drawn along.
+bool mayReach(const SplatFrame& f, const glm::ivec3& origin) {
+  constexpr float kToCentre = 3.5f, kToCorner = 6.0622f;  // half of 7 voxels, and √3 of that
+  float apart[3];
+  for (int axis = 0; axis < 3; ++axis)
+    apart[axis] = float(origin[axis] - f.record.cell[axis]) + kToCentre - f.record.rest[axis];
+  const float reach = (f.record.radius + kToCorner) * kRoom;
+  return squaredFromLine(f.shape, apart) <= reach * reach;
 }
 
 }  // namespace
 
-/// The field on the voxels from `origin` in the particle's own frame, or null where nothing erodes.
+/// The field on the voxels from `origin` in the particle's own frame, 0 where the kernel ends before it; null
+/// where nothing erodes.
 const float* SplatShaping::fieldAt(size_t n, const SplatFrame& f, const glm::ivec3& origin,
                                    float* values) const {
   if (f.shape.erosion == 0.0f) return nullptr;
-  float x[kLeafVoxels], y[kLeafVoxels], z[kLeafVoxels];
+  // Only what the kernel reaches is asked for: of a leaf that a particle touches, mostly a small part.
+  float x[kLeafVoxels], y[kLeafVoxels], z[kLeafVoxels], found[kLeafVoxels];
+  int voxel[kLeafVoxels];
+  size_t count = 0;
+  const float reach = f.record.radius * kRoom, perRadius = 1.0f / f.record.radius;
   for (int v = 0; v < kLeafVoxels; ++v) {
-    const glm::ivec3 at =
-        origin + glm::ivec3(v / (kLeafEdge * kLeafEdge), v / kLeafEdge % kLeafEdge, v % kLeafEdge);
-    x[v] = (float(at.x - f.record.cell[0]) - f.record.rest[0]) / f.record.radius;
-    y[v] = (float(at.y - f.record.cell[1]) - f.record.rest[1]) / f.record.radius;
-    z[v] = (float(at.z - f.record.cell[2]) - f.record.rest[2]) / f.record.radius;
+    const int step[] = {v / (kLeafEdge * kLeafEdge), v / kLeafEdge % kLeafEdge, v % kLeafEdge};
+    float apart[3];
+    for (int axis = 0; axis < 3; ++axis)
+      apart[axis] = float(origin[axis] + step[axis] - f.record.cell[axis]) - f.record.rest[axis];
+    if (squaredFromLine(f.shape, apart) >= reach * reach) continue;
+    x[count] = apart[0] * perRadius;
+    y[count] = apart[1] * perRadius;
+    z[count] = apart[2] * perRadius;
+    voxel[count++] = v;
   }
   // Each particle lies elsewhere in the field, by up to 1024 radii.
   constexpr uint32_t kTenBits = 1023;
   const uint32_t h = motion::hashBits(particles_.id.empty() ? uint32_t(n) : particles_.id[n]);
   const glm::dvec3 elsewhere(h & kTenBits, (h >> 10) & kTenBits, (h >> 20) & kTenBits);
-  settings_.erosion->evaluate(Points{elsewhere, size_t(kLeafVoxels), x, y, z}, values);
+  if (count > 0) settings_.erosion->evaluate(Points{elsewhere, count, x, y, z}, found);
+  std::fill_n(values, kLeafVoxels, 0.0f);
+  for (size_t k = 0; k < count; ++k) values[voxel[k]] = found[k];
   return values;
 }
 
