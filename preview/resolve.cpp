@@ -1,4 +1,4 @@
-// Framing and auto-exposure. Depends on scene, volume/bricks.h and gpu/stage_places.h.
+// Framing and auto-exposure. Depends on scene, volume/bricks.h and preview/stage_places.h.
 #include "preview/resolve.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "preview/gpu/stage_places.h"
+#include "preview/stage_places.h"
 #include "scene/light_model.h"
 
 namespace nephele {

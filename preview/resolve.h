@@ -1,5 +1,5 @@
 // What a scene leaves open, decided from the volume: the camera and the medium. Depends on scene,
-// volume/bricks.h and gpu/stage_places.h.
+// volume/bricks.h and preview/stage_places.h.
 #pragma once
 
 #include <string>

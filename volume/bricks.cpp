@@ -124,6 +124,10 @@ void buildBricks(BrickVolume& volume, const BrickSource& source) {
   volume.brickCount = glm::ivec3(0);
 }
 
+double voxelEdge(const BrickVolume& bricks) {
+  return std::cbrt(std::abs(glm::determinant(glm::dmat3(bricks.worldFromIndex))));
+}
+
 double densityAt(const BrickVolume& bricks, const glm::dvec3& index) {
   const glm::dvec3 low = glm::dvec3(bricks.brickMin) * double{kBrickCells};
   const glm::dvec3 high = glm::dvec3(bricks.brickMin + bricks.brickCount) * double{kBrickCells};

@@ -48,6 +48,9 @@ struct BrickVolume {
   bool empty() const { return slotMaximum.empty(); }
 };
 
+/// Cube root of a voxel's volume in the world.
+double voxelEdge(const BrickVolume& bricks);
+
 /// Trilinear density at an index-space position, in double precision from the stored samples; 0 outside all
 /// bricks. For tests and tools: one position at a time.
 double densityAt(const BrickVolume& bricks, const glm::dvec3& index);

@@ -1,5 +1,5 @@
 // Presets, lights, environment, medium, orders of scattering. Depends on imgui, scene, app/orbit_camera.h and
-// gpu/stage_places.h.
+// preview/stage_places.h.
 #include <imgui.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include "preview/app/orbit_camera.h"
 #include "preview/app/panel_parts.h"
 #include "preview/app/widgets.h"
-#include "preview/gpu/stage_places.h"
+#include "preview/stage_places.h"
 #include "preview/resolve.h"
 #include "scene/light_model.h"
 #include "scene/presets.h"

@@ -1,9 +1,9 @@
 // The panel's parts, each a file. They build widgets between ImGui's NewFrame and Render. Depends on
-// app/ui_state.h and gpu/stage_places.h.
+// app/ui_state.h and preview/stage_places.h.
 #pragma once
 
 #include "preview/app/ui_state.h"
-#include "preview/gpu/stage_places.h"
+#include "preview/stage_places.h"
 
 namespace nephele {
 

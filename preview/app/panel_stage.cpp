@@ -1,5 +1,5 @@
 // The stage: floor, balls and cube. What a scene leaves open shows the value in use, and is given once it is
-// changed. Depends on imgui and gpu/stage_places.h.
+// changed. Depends on imgui and preview/stage_places.h.
 #include <imgui.h>
 
 #include <glm/geometric.hpp>

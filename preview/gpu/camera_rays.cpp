@@ -102,7 +102,7 @@ void setLights(shared::MarchParameters& p, const std::vector<Light>& lights, con
 
 /// Optical depth of a voxel of mean active density.
 double voxelDepth(const BrickVolume& bricks, double sigmaMax) {
-  return sigmaMax * bricks.meanActive * std::cbrt(std::abs(glm::determinant(dmat3(bricks.worldFromIndex))));
+  return sigmaMax * bricks.meanActive * voxelEdge(bricks);
 }
 
 /// How steps follow the optical depth, and what the light cache holds.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "preview/gpu/stage_places.h"
+#include "preview/stage_places.h"
 
 namespace nephele {
 namespace {

@@ -1,4 +1,4 @@
-// The stage for the march. Depends on scene, gpu/stage_places.h,
+// The stage for the march. Depends on scene, preview/stage_places.h,
 // volume/bricks.h, volume/brick_layout.h and shaders/shared.
 #pragma once
 
@@ -10,7 +10,7 @@
 namespace nephele {
 
 /// Writes the rows of shaders/shared/stage_shapes.glsl; all 0 where the stage is off. Where its things stand:
-/// gpu/stage_places.h.
+/// preview/stage_places.h.
 /// `frame` is that of the index which will be marched, a level of `bricks`.
 void setStage(shared::MarchParameters& p, const ViewedScene& view, const BrickVolume& bricks,
               const IndexFrame& frame);

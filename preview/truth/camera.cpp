@@ -27,24 +27,34 @@ CameraRays::CameraRays(const Camera& camera, const BrickVolume& bricks, int widt
   corner_ = forward - 0.5 * pixel * width * right + half * up;
   dx_ = pixel * right;
   dy_ = -pixel * up;
-  const dvec3 brickCorner(bricks.brickMin * kBrickCells);
+  brickCorner_ = dvec3(bricks.brickMin * kBrickCells);
+  worldOrigin_ = dvec3(bricks.worldFromIndex[3]);
   indexFromWorld_ = glm::inverse(dmat3(bricks.worldFromIndex));
-  origin_ = indexFromWorld_ * (camera.position - dvec3(bricks.worldFromIndex[3])) - brickCorner;
+  origin_ = indexOf(camera.position);
   // The medium reaches one voxel beyond the active samples, but never beyond the bricks.
-  boxMin_ = glm::max(dvec3(bricks.activeMin - 1) - brickCorner, dvec3(0.0));
-  boxMax_ = glm::min(dvec3(bricks.activeMax) - brickCorner, dvec3(bricks.brickCount * kBrickCells));
+  boxMin_ = glm::max(dvec3(bricks.activeMin - 1) - brickCorner_, dvec3(0.0));
+  boxMax_ = glm::min(dvec3(bricks.activeMax) - brickCorner_, dvec3(bricks.brickCount * kBrickCells));
 }
 
-glm::vec3 CameraRays::along(double x, double y) const {
-  return glm::vec3(glm::normalize(corner_ + x * dx_ + y * dy_));
+dvec3 CameraRays::along(double x, double y) const { return glm::normalize(corner_ + x * dx_ + y * dy_); }
+
+dvec3 CameraRays::indexOf(const dvec3& place) const {
+  return indexFromWorld_ * (place - worldOrigin_) - brickCorner_;
 }
 
 std::optional<EnteringRay> CameraRays::at(double x, double y) const {
-  const dvec3 along = glm::normalize(corner_ + x * dx_ + y * dy_);
+  return enterFrom(origin_, along(x, y), std::numeric_limits<double>::infinity());
+}
+
+std::optional<EnteringRay> CameraRays::enter(const dvec3& place, const dvec3& along, double reach) const {
+  return enterFrom(indexOf(place), along, reach);
+}
+
+std::optional<EnteringRay> CameraRays::enterFrom(const dvec3& index, const dvec3& along, double reach) const {
   const dvec3 direction = indexFromWorld_ * along;
-  double near = 0.0, far = std::numeric_limits<double>::infinity();
+  double near = 0.0, far = reach;
   for (int axis = 0; axis < 3; ++axis) {
-    const double low = boxMin_[axis] - origin_[axis], high = boxMax_[axis] - origin_[axis];
+    const double low = boxMin_[axis] - index[axis], high = boxMax_[axis] - index[axis];
     constexpr double kStill = 1e-200;  // quotients of slower components overflow
     if (std::abs(direction[axis]) < kStill) {
       if (low > 0.0 || high < 0.0) return {};
@@ -55,7 +65,7 @@ std::optional<EnteringRay> CameraRays::at(double x, double y) const {
     far = std::min(far, std::max(a, b));
   }
   if (!(near < far)) return {};
-  const dvec3 entry = glm::clamp(origin_ + near * direction, boxMin_, boxMax_);
+  const dvec3 entry = glm::clamp(index + near * direction, boxMin_, boxMax_);
   return EnteringRay{
       {glm::vec3(entry), glm::vec3(direction), static_cast<float>(far - near)}, glm::vec3(along), near};
 }

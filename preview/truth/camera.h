@@ -25,12 +25,20 @@ class CameraRays {
   /// support.
   std::optional<EnteringRay> at(double x, double y) const;
   /// The ray's direction alone, unit, world axes.
-  glm::vec3 along(double x, double y) const;
+  glm::dvec3 along(double x, double y) const;
+  /// A ray from any place of the world within `reach`; nothing where it misses the support.
+  std::optional<EnteringRay> enter(const glm::dvec3& place, const glm::dvec3& along, double reach) const;
+  /// A place of the world in voxels from the corner of the brick grid.
+  glm::vec3 positionOf(const glm::dvec3& place) const { return glm::vec3(indexOf(place)); }
 
  private:
-  glm::dvec3 origin_;            // voxels from the corner of the brick grid
-  glm::dvec3 boxMin_, boxMax_;   // the support, in the same coordinates
-  glm::dvec3 corner_, dx_, dy_;  // world directions, length 1 along the camera's axis
+  std::optional<EnteringRay> enterFrom(const glm::dvec3& index, const glm::dvec3& along, double reach) const;
+  glm::dvec3 indexOf(const glm::dvec3& place) const;
+
+  glm::dvec3 worldOrigin_, brickCorner_;  // of index space in the world; of the brick grid in voxels
+  glm::dvec3 origin_;                     // voxels from the corner of the brick grid
+  glm::dvec3 boxMin_, boxMax_;            // the support, in the same coordinates
+  glm::dvec3 corner_, dx_, dy_;           // world directions, length 1 along the camera's axis
   glm::dmat3 indexFromWorld_;
 };
 

@@ -9,10 +9,10 @@ namespace nephele::truth {
 
 namespace {
 constexpr float kThird = 1.0f / 3.0f;
+constexpr double kNormal = 1.959963984540054;  // the 97.5% quantile of the normal distribution
 }  // namespace
 
 double studentQuantile(unsigned freedom) {
-  constexpr double kNormal = 1.959963984540054;  // the same quantile of the normal distribution
   constexpr double kOne = 12.706204736432095, kTwo = 4.302652729911275;
   if (freedom == 1) return kOne;
   if (freedom == 2) return kTwo;
@@ -40,24 +40,30 @@ void Estimate::add(size_t pixel, unsigned block, const BlockMean& mean) {
   s.takenDistance += mean.takenDistance;
 }
 
-double Estimate::relativeError(unsigned blocks) const {
+double Estimate::errorOf(unsigned blocks, bool bound) const {
   if (blocks < 2) return std::numeric_limits<double>::infinity();
   constexpr double kSeen = 1e-3;
   const double count = blocks;
-  double variance[3] = {}, sum[3] = {}, seen = 0.0;
+  double variance[3] = {}, squares[3] = {}, sum[3] = {}, seen = 0.0;
   for (const Sums& s : sums_) {
     const double through =
         double{s.transmittance[0] + s.transmittance[1] + s.transmittance[2]} / (3.0 * blocks);
     if (!(1.0 - through > kSeen)) continue;
     seen += 1.0;
     for (int c = 0; c < 3; ++c) {
-      variance[c] += double{s.squares[c]} / (count * (count - 1.0));
+      const double one = double{s.squares[c]} / (count * (count - 1.0));
+      variance[c] += one;
+      squares[c] += one * one;
       sum[c] += double{s.mean[c]};
     }
   }
   double error = 0.0;
-  for (int c = 0; c < 3; ++c)
-    if (sum[c] > 0.0) error += std::sqrt(variance[c] * seen) / sum[c] / 3.0;
+  for (int c = 0; c < 3; ++c) {
+    if (!(sum[c] > 0.0)) continue;
+    // Of the squared error's scatter, 2 Σ variance², and of the estimate's, the same over blocks − 1.
+    const double above = bound ? kNormal * std::sqrt(2.0 * squares[c] * count / (count - 1.0)) : 0.0;
+    error += std::sqrt((variance[c] + above) * seen) / sum[c] / 3.0;
+  }
   return error;
 }
 

@@ -27,7 +27,11 @@ class Estimate {
   /// √(mean over pixels of the variance of the mean)/mean radiance, averaged over channels, over the pixels
   /// whose alpha exceeds 1e-3: the noise of the picture in terms of relative RMSE. Infinite below two blocks;
   /// 0 for a black picture.
-  double relativeError(unsigned blocks) const;
+  double relativeError(unsigned blocks) const { return errorOf(blocks, false); }
+  /// What the picture's relative RMSE is below with a probability of 97.5%: the squared error of a picture is
+  /// a sum over pixels that scatters about the variances' sum, and that sum is estimated from few blocks. A
+  /// few bright pixels that make most of the noise make it wide.
+  double relativeErrorBound(unsigned blocks) const { return errorOf(blocks, true); }
   /// The picture with the planes of Method::render, then half1.R/G/B and half2.R/G/B (the means of the
   /// halves; absent below two blocks) and interval.R/G/B: half of the width of the 95% confidence interval of
   /// R, G and B by Student's distribution over the blocks.
@@ -41,6 +45,8 @@ class Estimate {
     float transmittance[3] = {};
     float taken = 0.0f, takenDistance = 0.0f;
   };
+  double errorOf(unsigned blocks, bool bound) const;
+
   int width_, height_;
   std::vector<Sums> sums_;
 };

@@ -151,12 +151,10 @@ class EventList {
     Value arrives = event.transmittance * along_.sigma;
     if (isPiece) arrives *= exponential((-event.cell->control * apart) * along_.sigma);
     const Value drawn = arrives * (density * mass_ / meanOf(arrives));
-    vec3 collides(smooth ? drawn * correction(event, first.distance) : drawn);
+    const vec3 collides(smooth ? drawn * correction(event, first.distance) : drawn);
     first.taken = meanOf(collides);
-    for (int c = 0; c < 3; ++c)
-      collides[c] *=
-          along_.medium.sigmaT[c] > 0.0f ? along_.medium.sigmaS[c] / along_.medium.sigmaT[c] : 0.0f;
-    first.weight = collides;
+    first.weight = collides * scatteredShare(along_.medium);
+    first.absorbed = collides * absorbedShare(along_.medium);
   }
 
   AlongRay<Value> along_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <tuple>
 
 namespace nephele::truth {
@@ -13,6 +14,8 @@ using glm::vec3;
 
 // Dimensions of the stratified points; 0 and 1 lie in the pixel.
 enum Dimension { kPlace = 2, kChoice = 3, kTurn1 = 4, kTurn2 = 5, kChannel = 6 };
+
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
 
 float largest(const vec3& v) { return std::max({v.x, v.y, v.z}); }
 
@@ -46,7 +49,7 @@ vec3 PathTracer::lightFromSources(const Vertex& vertex, float choice, Random& ra
     std::tie(lit, light) = unshadowed(++i);
   }
   const float share = largest(light) / all;
-  if (!(share > 0.0f)) return vec3(0.0f);
+  if (!(share > 0.0f) || wayFrom(vertex.position, lit.toLight) < lit.reach) return vec3(0.0f);
   const TrackedRay ray{vertex.position, medium_.indexFromWorld * lit.toLight, lit.reach};
   return light / share * transmittance(medium_, ray, random, looks);
 }
@@ -57,7 +60,7 @@ vec3 PathTracer::lightFromSky(const Vertex& vertex, float u1, float u2, Random& 
   const float phase = phase_.density(vertex.along, drawn.toSky);
   // The balance heuristic [Veach 1995]: phase/density · density/(density + phase).
   const vec3 light = vertex.weight * lights_.sky(drawn.toSky) * (phase / (drawn.density + phase));
-  if (!(largest(light) > 0.0f)) return vec3(0.0f);
+  if (!(largest(light) > 0.0f) || wayFrom(vertex.position, drawn.toSky) < kNowhere) return vec3(0.0f);
   const TrackedRay ray{vertex.position, medium_.indexFromWorld * drawn.toSky};
   return light * transmittance(medium_, ray, random, looks);
 }
@@ -72,26 +75,36 @@ bool PathTracer::survives(Vertex& vertex, Random& random) const {
   return true;
 }
 
+/// What a place emits, seen by light of weight `arriving` that is taken there: of that the absorbed share.
+vec3 PathTracer::emitted(const vec3& arriving, const vec3& position) const {
+  return arriving * absorbedShare(medium_) * emitter_->radiance(position);
+}
+
 /// Follows the path to its next scattering; what it meets instead is added to `radiance`. False where it
 /// ends.
 bool PathTracer::goOn(Vertex& vertex, vec3& radiance, Random& random, uint64_t& looks) const {
   const bool last = vertex.order == settings_.bounces;
-  if (last && !lights_.hasSky()) return false;
+  if (last && !lights_.hasSky() && emitter_ == nullptr) return false;
   const vec3 next = phase_.sample(vertex.along, vertex.drawn[1], vertex.drawn[2]);
+  const float way = wayFrom(vertex.position, next);
+  const bool toSky = lights_.hasSky() && !(way < kNowhere);
   const auto share = [&] {  // of the sky's light that is left to be met by chance
     if (!settings_.lightSampling) return 1.0f;
     const float phase = phase_.density(vertex.along, next);
     return phase / (phase + lights_.skyDensity(next));
   };
-  TrackedRay ray{vertex.position, medium_.indexFromWorld * next};
-  if (last && settings_.lightSampling) {
-    radiance += vertex.weight * share() * lights_.sky(next) * transmittance(medium_, ray, random, looks);
+  TrackedRay ray{vertex.position, medium_.indexFromWorld * next, way};
+  if (last && settings_.lightSampling && emitter_ == nullptr) {
+    if (toSky)
+      radiance += vertex.weight * share() * lights_.sky(next) * transmittance(medium_, ray, random, looks);
     return false;
   }
-  if (!nextCollision(medium_, ray, vertex.weight, random, looks)) {
-    if (lights_.hasSky()) radiance += vertex.weight * share() * lights_.sky(next);
+  vec3 arriving(0.0f);
+  if (!nextCollision(medium_, ray, vertex.weight, random, looks, &arriving)) {
+    if (toSky) radiance += vertex.weight * share() * lights_.sky(next);
     return false;
   }
+  if (emitter_ != nullptr) radiance += emitted(arriving, ray.origin);
   vertex.position = ray.origin;
   vertex.along = next;
   ++vertex.order;
@@ -127,20 +140,23 @@ PathSample PathTracer::trace(const TrackedRay& ray, const vec3& along, const Str
     sample.distance = first.distance;
     vertex.position = first.position;
     vertex.weight = first.weight;
+    if (emitter_ != nullptr) sample.radiance = first.absorbed * emitter_->radiance(first.position);
   } else {
     TrackedRay tracked = ray;
     vertex.weight = vec3(1.0f);
-    const bool found = nextCollision(medium_, tracked, vertex.weight, random, looks);
+    vec3 arriving(0.0f);
+    const bool found = nextCollision(medium_, tracked, vertex.weight, random, looks, &arriving);
     sample.transmittance = vec3(found ? 0.0f : 1.0f);
     if (!found) return sample;
     sample.taken = 1.0f;
+    if (emitter_ != nullptr) sample.radiance = emitted(arriving, tracked.origin);
     vertex.position = tracked.origin;
     sample.distance = glm::length(medium_.worldFromIndex * (tracked.origin - ray.origin));
   }
   vertex.scale = largest(vertex.weight);
   if (!(vertex.scale > 0.0f)) return sample;
   vertex.drawn = {lights_.count() > 1 ? draw(kChoice) : 0.0f, draw(kTurn1), draw(kTurn2)};
-  sample.radiance = gather(vertex, random, looks);
+  sample.radiance += gather(vertex, random, looks);
   return sample;
 }
 

@@ -13,10 +13,12 @@
 #include <glm/matrix.hpp>
 #include <optional>
 
+#include "base/error.h"
 #include "base/progress.h"
 #include "preview/truth/camera.h"
 #include "preview/truth/estimate.h"
 #include "preview/truth/path_tracer.h"
+#include "preview/truth/staged_tracer.h"
 #include "scene/light_model.h"
 #include "scene/sky.h"
 
@@ -72,8 +74,14 @@ class Sampling {
       : request_(request),
         medium_(trackedMedium(bricks, view.medium)),
         lights_(view, medium_, worldCorner(bricks)),
-        tracer_(medium_, phaseOf(view), lights_, {request.bounces.value_or(-1), true}),
+        emitter_(Emitter::isOn(view, bricks) ? std::optional<Emitter>(std::in_place, view, bricks)
+                                             : std::nullopt),
+        stage_(view.scene.stage.on ? std::optional<StageSurfaces>(std::in_place, view, bricks)
+                                   : std::nullopt),
+        tracer_(medium_, phaseOf(view), lights_, {request.bounces.value_or(-1), true},
+                emitter_ ? &*emitter_ : nullptr, stage_ ? &*stage_ : nullptr),
         rays_(view.camera, bricks, request.width, request.height),
+        camera_(view.camera.position),
         sky_(view),
         width_(strided(request.width, request.stride)),
         height_(strided(request.height, request.stride)),
@@ -111,9 +119,13 @@ class Sampling {
     const float share = 1.0f / static_cast<float>(size);
     for (unsigned i = 0; i < size; ++i) {
       const double atX = x + double{stratified(0, i, seed)}, atY = y + double{stratified(1, i, seed)};
+      if (stage_) {
+        addStaged(rays_.along(atX, atY), {i, seed}, share, mean, looks);
+        continue;
+      }
       const auto entering = rays_.at(atX, atY);
       if (!entering) {
-        if (sky_.shown) sky_.add(rays_.along(atX, atY), share, glm::vec3(1.0f), mean);
+        if (sky_.shown) sky_.add(glm::vec3(rays_.along(atX, atY)), share, glm::vec3(1.0f), mean);
         continue;
       }
       Random random(seedOf(seed, i));
@@ -130,11 +142,28 @@ class Sampling {
                   mean);
   }
 
+  void addStaged(const glm::dvec3& along, const StratifiedPoint& point, float share, BlockMean& mean,
+                 uint64_t& looks) {
+    Random random(seedOf(point.seed, point.number));
+    const StagedTracer staged(*stage_, rays_, tracer_, medium_, lights_);
+    const StagedSample sample = staged.trace(camera_, along, point, random, looks);
+    for (int c = 0; c < 3; ++c) {
+      mean.radiance[c] += share * sample.radiance[c];
+      mean.transmittance[c] -= share * (1.0f - sample.transmittance[c]);
+    }
+    if (sky_.shown) sky_.add(glm::vec3(along), share, sample.transmittance, mean);
+    mean.taken += share * sample.taken;
+    mean.takenDistance += share * sample.takenDistance;
+  }
+
   const PictureRequest& request_;
   TrackedMedium medium_;
   LightSources lights_;
+  std::optional<Emitter> emitter_;
+  std::optional<StageSurfaces> stage_;
   PathTracer tracer_;
   CameraRays rays_;
+  glm::dvec3 camera_;
   SkyBehind sky_;
   int width_, height_;
   Estimate estimate_;
@@ -148,8 +177,8 @@ unsigned blockSize(unsigned samples) {
   return std::clamp(std::bit_floor(samples / kBlocks), 1u, kLargest);
 }
 
-/// Samples until the picture's noise is at most `error`, or a pixel has its most samples. Returns how many
-/// blocks that took.
+/// Samples until the picture's noise is surely at most `error`, or a pixel has its most samples. Returns how
+/// many blocks that took.
 unsigned sampleUntil(Sampling& sampling, double error, unsigned size, unsigned mostSamples) {
   constexpr unsigned kFirst = 8;    // fewer tell the noise badly
   constexpr double kAtOnce = 2.0;   // grow by at most this factor between two looks at the noise
@@ -158,7 +187,7 @@ unsigned sampleUntil(Sampling& sampling, double error, unsigned size, unsigned m
   for (unsigned until = kFirst;;) {
     sampling.add(blocks, until, size);
     blocks = until;
-    const double reached = sampling.estimate().relativeError(blocks);
+    const double reached = sampling.estimate().relativeErrorBound(blocks);
     if (reached <= error || (mostSamples > 0 && blocks * size >= mostSamples)) return blocks;
     const double ratio = std::min(kAtOnce, kMargin * reached * reached / (error * error));
     until = blocks + 2 * static_cast<unsigned>(std::ceil(0.5 * (ratio - 1.0) * blocks));
@@ -175,7 +204,7 @@ Picture emptyPicture(const ViewedScene& view, const PictureRequest& request, uns
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       BlockMean mean;
-      if (sky.shown) sky.add(rays.along(centre(column), centre(row)), 1.0f, glm::vec3(1.0f), mean);
+      if (sky.shown) sky.add(glm::vec3(rays.along(centre(column), centre(row))), 1.0f, glm::vec3(1.0f), mean);
       for (unsigned block = 0; block < blocks; ++block)
         estimate.add(static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column),
                      block, mean);
@@ -194,7 +223,11 @@ class ReferenceMethod : public Method {
     const auto start = Clock::now();
     unsigned blocks = 2;
     Picture picture;
+    if (view.scene.stage.on && request.bounces != 0)
+      throw InputError({}, "the reference renders the stage by the first order alone", "ask for --bounces 0");
     const bool medium = view.medium.sigmaS != Rgb{} || view.medium.sigmaA != Rgb{};
+    if (view.scene.stage.on && (bricks_->empty() || !medium))
+      throw InputError({}, "the reference renders the stage around a medium, and there is none");
     if (bricks_->empty() || !medium) {
       picture = emptyPicture(view, request, blocks);
       cost = {};

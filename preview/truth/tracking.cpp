@@ -102,8 +102,22 @@ vec3 transmittance(const TrackedMedium& medium, const TrackedRay& ray, Random& r
                      : transmittanceAs<vec3>(medium, ray, random, looks);
 }
 
+vec3 scatteredShare(const TrackedMedium& medium) {
+  vec3 share(0.0f);
+  for (int c = 0; c < 3; ++c)
+    if (medium.sigmaT[c] > 0.0f) share[c] = medium.sigmaS[c] / medium.sigmaT[c];
+  return share;
+}
+
+vec3 absorbedShare(const TrackedMedium& medium) {
+  vec3 share(0.0f);
+  for (int c = 0; c < 3; ++c)
+    if (medium.sigmaT[c] > 0.0f) share[c] = (medium.sigmaT[c] - medium.sigmaS[c]) / medium.sigmaT[c];
+  return share;
+}
+
 bool nextCollision(const TrackedMedium& medium, TrackedRay& ray, vec3& weight, Random& random,
-                   uint64_t& looks) {
+                   uint64_t& looks, vec3* arriving) {
   float toLook = random.exponential();
   bool found = false;
   const vec3 share = medium.sigmaT / medium.sigmaMax;
@@ -129,8 +143,8 @@ bool nextCollision(const TrackedMedium& medium, TrackedRay& ray, vec3& weight, R
       }
       if (found) {
         ray.origin = position;
-        for (int c = 0; c < 3; ++c)
-          weight[c] *= medium.sigmaT[c] > 0.0f ? medium.sigmaS[c] / medium.sigmaT[c] : 0.0f;
+        if (arriving != nullptr) *arriving = weight;
+        weight *= scatteredShare(medium);
         return false;
       }
       toLook = random.exponential();

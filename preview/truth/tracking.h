@@ -23,6 +23,10 @@ struct TrackedMedium {
   glm::mat3 indexFromWorld{1.0f}, worldFromIndex{1.0f};
 };
 
+/// σ_s/σ_t and σ_a/σ_t per channel; 0 where nothing is taken.
+glm::vec3 scatteredShare(const TrackedMedium& medium);
+glm::vec3 absorbedShare(const TrackedMedium& medium);
+
 struct TrackedRay {
   glm::vec3 origin, direction;
   float reach = std::numeric_limits<float>::infinity();  // world units
@@ -42,8 +46,9 @@ struct FirstScattering {
   bool found = false;
   glm::vec3 position{0.0f};
   float distance = 0.0f;
-  glm::vec3 weight{0.0f};  // of scattered light: σ_s ρ T over the density with which the place was drawn
-  float taken = 0.0f;      // mean over channels of σ_t ρ T over that density: its expectation is 1 − T
+  glm::vec3 weight{0.0f};    // of scattered light: σ_s ρ T over the density with which the place was drawn
+  glm::vec3 absorbed{0.0f};  // σ_a ρ T over the same: of what the place emits
+  float taken = 0.0f;        // mean over channels of σ_t ρ T over that density: its expectation is 1 − T
   glm::vec3 transmittance{1.0f};  // an unbiased estimate
 };
 
@@ -56,9 +61,10 @@ FirstScattering firstScattering(const TrackedMedium& medium, const TrackedRay& r
 
 /// Delta tracking [Woodcock 1965] to the next collision; in coloured media with the probabilities of spectral
 /// tracking [Kutz et al. 2017], which keep `weight`'s channels bounded. True where one is found: `ray.origin`
-/// is then its place and `weight` has been multiplied by the albedo. False where the ray left the medium. In
-/// a grey medium of albedo 1 the weight never changes.
+/// is then its place, `weight` has been multiplied by the albedo, and `arriving`, where it is asked for, is
+/// the weight before that. False where the ray left the medium. In a grey medium of albedo 1 the weight never
+/// changes.
 bool nextCollision(const TrackedMedium& medium, TrackedRay& ray, glm::vec3& weight, Random& random,
-                   uint64_t& looks);
+                   uint64_t& looks, glm::vec3* arriving = nullptr);
 
 }  // namespace nephele::truth

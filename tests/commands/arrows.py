@@ -20,7 +20,7 @@ ROOMS = [
     ("preview/twin", r"preview/twin/"),
     ("preview/truth", r"preview/truth/"),
     ("preview/measure", r"preview/measure/"),
-    ("method", r"preview/(method|filter|viewed_scene)\.h"),
+    ("method", r"preview/(method|filter|stage_places|viewed_scene)\.h"),
     ("preview", r"preview/"),
     ("shared", r"shaders/shared/"),
     ("shaders", r"shaders/"),

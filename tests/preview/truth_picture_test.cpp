@@ -1,12 +1,15 @@
 // The path tracer's pictures against closed forms: single scattering, white furnace path by path, colours,
-// placements; the same picture on any number of threads.
+// placements, glowing media; the noise that it tells; the same picture on any number of threads.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
+#include <random>
 
+#include "preview/truth/estimate.h"
 #include "preview/truth/path_tracer.h"
+#include "scene/blackbody.h"
 #include "tests/preview/truth_bench.h"
 
 namespace nephele {
@@ -195,6 +198,94 @@ TEST(TruthPicture, HalvesAreIndependentAndMakeTheWhole) {
   }
   // Uncorrelated but for the noise of `truth`, which both share: 1/16 of the halves' variance times two.
   EXPECT_LT(std::abs(product), 0.2 * square);
+}
+
+/// A cube of 16³ voxels of side 0.25 and density 2 about the origin, of `kelvin` throughout.
+BrickVolume hotCube(double kelvin) {
+  glm::dmat4 place(0.25);
+  place[3] = glm::dvec4(-1.875, -1.875, -1.875, 1.0);  // samples 0 to 15
+  BrickVolume bricks = volumeOf(glm::ivec3(16), glm::ivec3(0), place, [](const glm::dvec3&) { return 2.0; });
+  glm::dmat4 hotPlace(0.5);  // coarser, elsewhere in its index, around the whole cube
+  hotPlace[3] = glm::dvec4(7.0, -9.0, 2.5, 1.0);
+  const glm::ivec3 first(glm::round(glm::dvec3(glm::inverse(hotPlace) * glm::dvec4(-3.0, -3.0, -3.0, 1.0))));
+  bricks.temperature = std::make_shared<const BrickVolume>(
+      volumeOf(glm::ivec3(13), first, hotPlace, [kelvin](const glm::dvec3&) { return 1e-3 * kelvin; }));
+  return bricks;
+}
+
+constexpr double kKelvin = 2600.0, kGlow = 3.0;
+
+ViewedScene hotView(const glm::dvec3& from, const Medium& medium) {
+  ViewedScene view = viewFrom(from, from + glm::dvec3(0, 1, 0), 0.01, medium);
+  view.scene.emission.temperatureScale = 1000.0;
+  view.scene.emission.scale = kGlow;
+  return view;
+}
+
+TEST(TruthPicture, AGlowingBoxHasItsClosedForm) {
+  // σ_a B (1 − e^(−σ_t d))/σ_t, without scattering; faces fall off over a voxel each: columns are exact.
+  ViewedScene view = hotView({0.1, -30, -0.2}, mediumOf(0.0, 0.0, 0.0));
+  view.medium.sigmaA = {0.05, 0.2, 0.6};
+  const auto hot = blackbodyRadiance(kKelvin);
+  const Picture picture = renderTruth(hotCube(kKelvin), view, requestOf(8, 1024));
+  for (size_t c = 0; c < 3; ++c) {
+    const double column = 2.0 * 16.0 * 0.25;
+    const double expected = kGlow * hot[c] * (1.0 - std::exp(-view.medium.sigmaA[c] * column));
+    EXPECT_NEAR(meanOf(picture.planes[c]) / expected, 1.0, 5e-3) << c;
+  }
+  // One scattering takes σ_s out of the way and brings only light that was emitted elsewhere.
+  view.medium = mediumOf(0.0, 0.2, 0.0);
+  const double absorbing = meanOf(renderTruth(hotCube(kKelvin), view, requestOf(8, 256)).planes[0]);
+  view.scene.emission.on = false;
+  EXPECT_EQ(meanOf(renderTruth(hotCube(kKelvin), view, requestOf(8, 16)).planes[0]), 0.0);
+  EXPECT_GT(absorbing, 0.0);
+}
+
+TEST(TruthPicture, InsideAThickHotMediumAllIsBlackBody) {
+  // Kirchhoff: where nothing leaves, radiance is the black body's, whatever is scattered. 60 optical depths.
+  const auto hot = blackbodyRadiance(kKelvin);
+  for (const double albedo : {0.0, 0.5, 0.9}) {
+    const ViewedScene view = hotView({0, 0, 0}, mediumOf(15.0 * albedo, 15.0 * (1.0 - albedo), 0.4));
+    const Picture picture = renderTruth(hotCube(kKelvin), view, requestOf(8, 256));
+    for (size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(meanOf(picture.planes[c]) / (kGlow * hot[c]), 1.0, 0.01) << albedo;
+  }
+  const ViewedScene scattering = hotView({0, 0, 0}, mediumOf(7.5, 7.5, 0.4));
+  const Picture direct = renderTruth(hotCube(kKelvin), scattering, requestOf(8, 256, 0));
+  // No more than one scattering: ½ is emitted at the first place, ¼ before the second.
+  EXPECT_NEAR(meanOf(direct.planes[0]) / (kGlow * hot[0]), 0.75, 0.01);
+}
+
+TEST(TruthPicture, TheNoisesBoundIsSeldomExceeded) {
+  constexpr int kTrials = 2000, kSize = 8;
+  constexpr unsigned kBlocks = 8;
+  constexpr double kNoise = 0.2;
+  std::mt19937_64 numbers(7);
+  std::normal_distribution<double> normal(1.0, kNoise);
+  int aboveEstimate = 0, aboveBound = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    truth::Estimate estimate(kSize, kSize);
+    for (size_t pixel = 0; pixel < size_t{kSize} * kSize; ++pixel)
+      for (unsigned block = 0; block < kBlocks; ++block) {
+        truth::BlockMean mean;
+        for (int c = 0; c < 3; ++c) {
+          mean.radiance[c] = static_cast<float>(normal(numbers));
+          mean.transmittance[c] = 0.0f;
+        }
+        estimate.add(pixel, block, mean);
+      }
+    const Picture picture = estimate.picture(kBlocks);
+    double error = 0.0;
+    for (size_t c = 0; c < 3; ++c) {
+      double squares = 0.0;
+      for (const float value : picture.planes[c]) squares += (double{value} - 1.0) * (double{value} - 1.0);
+      error += std::sqrt(squares / (kSize * kSize)) / 3.0;
+    }
+    aboveEstimate += error > estimate.relativeError(kBlocks) ? 1 : 0;
+    aboveBound += error > estimate.relativeErrorBound(kBlocks) ? 1 : 0;
+  }
+  EXPECT_GT(aboveEstimate, kTrials / 3);
+  EXPECT_LT(aboveBound, kTrials / 40);  // 2.5% for one channel; the mean of three scatters less
 }
 
 TEST(TruthPicture, StopsAtTheErrorAskedFor) {
