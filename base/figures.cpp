@@ -4,6 +4,9 @@
 #include <cstdio>
 
 namespace nephele {
+namespace {
+constexpr double kPercent = 100.0;
+}
 
 std::string number(double value, int digits) {
   char text[40];
@@ -11,9 +14,17 @@ std::string number(double value, int digits) {
   return text;
 }
 
-std::string percent(double share) {
-  constexpr double kPercent = 100.0;
-  return number(kPercent * share, 3) + "%";
+std::string percent(double share) { return number(kPercent * share, 3) + "%"; }
+
+std::string shortPercent(double share) {
+  constexpr double kTwoPlaces = 0.01, kOnePlace = 0.1;  // below
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f%%",
+                share < kTwoPlaces  ? 2
+                : share < kOnePlace ? 1
+                                    : 0,
+                kPercent * share);
+  return text;
 }
 
 }  // namespace nephele

@@ -98,7 +98,7 @@ int chartCommand(const ChartOptions& options) {
   const float exposureEv = static_cast<float>(chooseExposure(result.shots.front().picture));
   const std::string unable = writeChart(options.out, title, result, exposureEv);
   if (!unable.empty()) std::cerr << unable << '\n';
-  for (const std::string& what : result.leftOut) std::cerr << "left out for want of time: " << what << '\n';
+  for (const std::string& what : result.leftOut) std::cerr << "left out: " << what << '\n';
   std::cout << frontAsText(result) << std::flush;
   return kExitDone;
 }

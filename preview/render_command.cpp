@@ -13,6 +13,7 @@
 #include "preview/behind.h"
 #include "preview/measure/compare.h"
 #include "preview/measure/error_request.h"
+#include "preview/measure/trust.h"
 #include "preview/method.h"
 #include "preview/render_stats.h"
 #include "preview/resolve.h"
@@ -92,14 +93,13 @@ class Sequence {
     if (!view_) {
       std::string sentence;
       view_ = resolveScene(scene_, bricks, static_cast<double>(options_.width) / options_.height, sentence);
-      if (scene_.stage.on && row_.name != "march")
-        throw InputError({},
-                         "the stage is drawn by --method march alone; switch it off by stage: { on: false }");
-      if (scene_.stage.on && chooses())
-        throw InputError(
-            {}, "--error needs truth, and the stage has none; switch it off by stage: { on: false }");
+      if (scene_.stage.on) requireStage();
       std::cerr << sentence << '\n' << describeLight(*view_) << '\n';
       if (isReference()) tellWhatIsLeftOut();
+      const SceneFacts facts = sceneFactsOf(brickFactsOf(bricks), bricks, *view_);
+      if (!chooses())  // --error measures instead
+        for (const std::string& warning : trustWarnings(row_.name, facts, *view_, trustTable()))
+          std::cerr << warning << '\n';
       method_ = row_.make({options_.filter, options_.vramBytes});
     }
     method_->setVolume(bricks);
@@ -136,12 +136,25 @@ class Sequence {
     request.error = options_.error;
     return request;
   }
+  void requireStage() const {
+    if (row_.name != kMarchMethod && !isReference())
+      throw InputError(
+          {},
+          "the stage is drawn by --method march and reference alone; switch it off by stage: { on: false }");
+    if (chooses() && (scene_.stage.highlights || scene_.stage.penumbra > 0.0))
+      throw InputError(
+          {},
+          "--error needs truth, and the stage's highlights and penumbras have none; switch them off by "
+          "stage: { highlights: false, penumbra: 0 }");
+  }
   /// The path tracer knows physics alone.
   void tellWhatIsLeftOut() const {
     for (const LightTerm& term : termsOf(lightModelOf(view_->scene, view_->medium)))
       if (term.on && !term.physical)
         std::cerr << "reference: leaves out '" << term.name << "', which has no truth: it " << term.sentence
                   << '\n';
+    if (scene_.stage.on && (scene_.stage.highlights || scene_.stage.penumbra > 0.0))
+      std::cerr << "reference: leaves out the stage's highlights and penumbras, which have no truth\n";
   }
   bool isReference() const { return row_.name == kReferenceMethod; }
   bool chooses() const { return options_.error > 0.0 && !isReference(); }
@@ -149,9 +162,7 @@ class Sequence {
   /// A picture that errs by no more than --error asks: the cheapest way that is expected to, and a dearer one
   /// where the picture then measures worse.
   Picture renderWithin(const BrickVolume& bricks, PictureCost& cost) {
-    const bool emits =
-        scene_.emission.on.value_or(true) && bricks.temperature && view_->medium.sigmaA != Rgb{};
-    requireTruth(*view_, emits);
+    requireTruth(*view_);
     if (!truth_) truth_ = findMethod(std::string(kReferenceMethod)).make({});
     truth_->setVolume(bricks);
     ErrorReport report;

@@ -11,12 +11,14 @@
 #include "base/files.h"
 #include "preview/app/heap.h"
 #include "preview/app/scene_file.h"
+#include "preview/measure/trust.h"
 #include "preview/resolve.h"
 #include "preview/temperature.h"
 
 namespace nephele {
 namespace {
 
+constexpr std::string_view kMethod = "march";  // that the window draws by
 constexpr size_t kMostUndo = 200;
 constexpr double kNoticeSeconds = 8.0;
 constexpr double kFirstPictureSeconds = 0.03;
@@ -58,6 +60,7 @@ void Desk::begin() {
 void Desk::adopt(bool otherFile) {
   const BrickVolume& volume = document_.volume();
   window_.setTitle("Nephele: " + std::filesystem::path(volume.path).filename().string());
+  brickFacts_ = brickFactsOf(volume);
   if (otherFile) {
     Scene scene = state_.settings.scene;
     scene.camera = firstScene_.camera;
@@ -210,6 +213,12 @@ UiFacts Desk::facts() const {
                 {},
                 {}};
   facts.warnings = document_.volume().notes;
+  if (!live_) {  // the map knows still volumes alone
+    const ViewedScene view = request(state_.settings).view;
+    for (std::string& warning :
+         trustWarnings(kMethod, sceneFactsOf(brickFacts_, document_.volume(), view), view, trustTable()))
+      facts.warnings.push_back(std::move(warning));
+  }
   if (live_) {
     facts.live =
         LiveFacts{live_->playing(), live_->frame(), live_->alive(), leftOutLive(*state_.settings.particles)};

@@ -14,6 +14,7 @@
 #include "preview/app/ui_state.h"
 #include "preview/app/viewer.h"
 #include "preview/app/window.h"
+#include "preview/measure/scene_facts.h"
 
 namespace nephele {
 
@@ -99,6 +100,7 @@ class Desk {
   Window& window_;
   Scene firstScene_;  // as the command line gave it, for files opened later
   Document document_;
+  BrickFacts brickFacts_;  // of the file's volume
   Viewer viewer_;
   UiState state_;
   std::optional<LiveSource> liveSource_;  // of the file

@@ -11,8 +11,8 @@
 #include "preview/app/orbit_camera.h"
 #include "preview/app/panel_parts.h"
 #include "preview/app/widgets.h"
-#include "preview/stage_places.h"
 #include "preview/resolve.h"
+#include "preview/stage_places.h"
 #include "scene/light_model.h"
 #include "scene/presets.h"
 

@@ -154,7 +154,7 @@ std::string pageOf(const std::string& folder, const std::string& title, const Sw
          << htmlEscaped(shot.name) << "</figcaption></figure>\n";
   }
   if (!result.leftOut.empty()) {
-    page << "<h2>Left out for want of time</h2><ul>";
+    page << "<h2>Left out</h2><ul>";
     for (const std::string& what : result.leftOut) page << "<li>" << htmlEscaped(what);
     page << "</ul>\n";
   }

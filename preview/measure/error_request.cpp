@@ -69,13 +69,10 @@ std::optional<int> bouncesOfTruth(const ViewedScene& view, std::optional<int> gi
   return {};
 }
 
-void requireTruth(const ViewedScene& view, bool emits) {
+void requireTruth(const ViewedScene& view) {
   if (view.scene.look == Look::report)
     throw InputError({}, "--error needs a truth, and the report look has none: it is a picture by design",
                      "give a scene with look: physical by --scene");
-  if (emits)
-    throw InputError({}, "--error needs a truth, and the reference does not trace emission",
-                     "switch it off in the scene by emission: { on: false }");
 }
 
 std::vector<Setting> marchCandidates(const Scene& scene) {

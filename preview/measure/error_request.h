@@ -30,9 +30,8 @@ struct ErrorRung {
 /// else all.
 std::optional<int> bouncesOfTruth(const ViewedScene& view, std::optional<int> given);
 
-/// Throws InputError with one sentence where a scene has no truth to err from: the `report` look, and thermal
-/// emission, which the reference does not trace.
-void requireTruth(const ViewedScene& view, bool emits);
+/// Throws InputError with one sentence where a scene has no truth to err from: the `report` look.
+void requireTruth(const ViewedScene& view);
 
 /// The march's settings that are tried, without samples: steps from 4 voxels to 1/4, light cached and
 /// marched. What they do not set is the scene's.

@@ -190,11 +190,13 @@ StabilityResult runStability(const StabilityOptions& options) {
         method.setVolume(bricks);
         truth = truthOf(method, on, options);
       }
+      const SceneFacts facts = sceneFactsOf(brickFactsOf(bricks), bricks, on.view);
       for (size_t way = 0; way < result.ways.size(); ++way) {
         Method& method = makers.at(result.ways[way].row);
         method.setVolume(bricks);
         byWay[way].push_back(cellOf(method, result.ways[way], on, truth ? &*truth : nullptr, options));
         byWay[way].back().way = way;
+        byWay[way].back().facts = facts;
       }
       progress.advance();
     }

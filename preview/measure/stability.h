@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "preview/measure/compare.h"
+#include "preview/measure/scene_facts.h"
 #include "preview/measure/stability_cases.h"
 #include "preview/method.h"
 
@@ -30,6 +31,7 @@ BadValues badValuesIn(const Picture& picture);
 struct StabilityCell {
   size_t way = 0;
   std::string axis, value;
+  SceneFacts facts;                 // of the case
   std::optional<NoisyError> error;  // none: no truth, a dark truth, or refused
   BadValues bad;
   std::string refused;  // the sentence, where the method refuses the case

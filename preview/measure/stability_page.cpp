@@ -2,31 +2,22 @@
 #include "preview/measure/stability_page.h"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <sstream>
 
 #include "base/error.h"
+#include "base/figures.h"
 #include "base/files.h"
 #include "base/heat_map.h"
+#include "preview/measure/trust.h"
 
 namespace nephele {
 namespace {
 
-std::string percent(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text,
-                value < 0.01  ? "%.2f%%"
-                : value < 0.1 ? "%.1f%%"
-                              : "%.0f%%",
-                100.0 * value);
-  return text;
-}
-
 std::string textOf(const StabilityCell& cell) {
   if (!cell.refused.empty()) return "refused";
   if (cell.bad.any()) return "BAD";
-  return cell.error ? percent(cell.error->relativeRmse) : "finite";
+  return cell.error ? shortPercent(cell.error->relativeRmse) : "finite";
 }
 
 bool isTrusted(const StabilityCell& cell) {
@@ -128,7 +119,7 @@ std::string stabilityPage(const StabilityResult& result) {
          "steps of half a voxel, 32×32 pixels, 16 samples a pixel. Figures are relative RMSE against "
          "single-scattering\n"
          "truth, whose noise is taken out. Trusted is what errs by at most "
-      << percent(kTrustedError)
+      << shortPercent(kTrustedError)
       << ". `finite`: without a truth (powder, octaves, what\n"
          "shows no light) and free of NaN, infinity and negative values, as every other cell is too; `BAD` "
          "would mean\n"
@@ -141,8 +132,8 @@ std::string stabilityPage(const StabilityResult& result) {
            "noise.\n\n"
            "| method | motion | error of the change | truth's change |\n|---|---|---|---|\n";
     for (const Flicker& f : result.flicker)
-      out << "| " << result.ways[f.way].name << " | " << f.motion << " | " << percent(f.error) << " | "
-          << percent(f.change) << " |\n";
+      out << "| " << result.ways[f.way].name << " | " << f.motion << " | " << shortPercent(f.error) << " | "
+          << shortPercent(f.change) << " |\n";
   }
   return out.str();
 }
@@ -161,8 +152,8 @@ std::vector<std::string> badCells(const StabilityResult& result) {
 
 std::string writeStability(const std::string& folder, const StabilityResult& result) {
   writeCsv(folder + "/stability.csv", tableOf(result));
-  const std::string page = stabilityPage(result), path = folder + "/stability.md";
-  writeText(path, page);
+  writeText(folder + "/stability.md", stabilityPage(result));
+  writeText(folder + "/stability_table.inc", trustRowsAsText(result));
   return drawHeatMaps(mapsOf(result), folder, "stability");
 }
 

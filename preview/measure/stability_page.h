@@ -1,5 +1,5 @@
-// The stability map as files: stability.csv, stability.svg, stability.png and stability.md. Depends on
-// preview/measure and base.
+// The stability map as files: stability.csv, .svg, .png, .md, and stability_table.inc for the warnings.
+// Depends on preview/measure and base.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ inline constexpr double kTrustedError = 0.05;
 /// flicker. Markdown.
 std::string stabilityPage(const StabilityResult& result);
 
-/// Writes the four files into `folder`, which exists; returns as writeChart does.
+/// Writes the files into `folder`, which exists; returns as writeChart does.
 std::string writeStability(const std::string& folder, const StabilityResult& result);
 
 /// Sentences on what no picture may hold, one a cell; empty where all is well.

@@ -4,11 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <limits>
 #include <map>
 #include <memory>
-#include <sstream>
 
 #include "base/error.h"
 #include "base/front.h"
@@ -24,13 +21,6 @@ constexpr const char* kTruth = "reference";
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// A guess of relative cost, for order alone.
-double guessedCost(const Setting& setting) {
-  constexpr double kTruthCost = 0.1, kMarchedLight = 4.0;  // beside a march of one voxel under cached light
-  if (setting.method == kTruth) return kTruthCost * setting.samples;
-  return setting.samples / setting.march.stepVoxels * (setting.march.lightCache ? 1.0 : kMarchedLight);
 }
 
 /// Makes methods as they are needed and keeps them.
@@ -55,15 +45,44 @@ class Methods {
   std::map<std::string, std::unique_ptr<Method>> made_;
 };
 
-PictureRequest requestOf(const SweepOptions& options, unsigned samples, unsigned seed) {
+PictureRequest requestOf(const SweepOptions& options, unsigned samples, unsigned seed, int coarser = 1) {
   PictureRequest request;
-  request.width = options.width;
-  request.height = options.height;
+  request.width = options.width / coarser;
+  request.height = options.height / coarser;
   request.samples = samples;
   request.seed = seed;
   request.quiet = true;
   request.bounces = options.bounces;
   return request;
+}
+
+/// Each plane, linear between the centres of the smaller picture's pixels and held beyond them.
+Picture enlarged(const Picture& small, int times) {
+  if (times == 1) return small;
+  Picture large;
+  large.width = small.width * times;
+  large.height = small.height * times;
+  for (const std::string& name : small.names) large.add(name);
+  const auto place = [times](int at, int length) {
+    return std::clamp((at + 0.5) / times - 0.5, 0.0, length - 1.0);
+  };
+  for (int y = 0; y < large.height; ++y)
+    for (int x = 0; x < large.width; ++x) {
+      const double fromX = place(x, small.width), fromY = place(y, small.height);
+      const int x0 = static_cast<int>(fromX), y0 = static_cast<int>(fromY);
+      const int x1 = std::min(x0 + 1, small.width - 1), y1 = std::min(y0 + 1, small.height - 1);
+      for (size_t plane = 0; plane < small.planes.size(); ++plane) {
+        const auto at = [&](int column, int row) {
+          return double{small.planes[plane][static_cast<size_t>(row) * static_cast<size_t>(small.width) +
+                                            static_cast<size_t>(column)]};
+        };
+        const double above = std::lerp(at(x0, y0), at(x1, y0), fromX - x0),
+                     below = std::lerp(at(x0, y1), at(x1, y1), fromX - x0);
+        large.planes[plane][static_cast<size_t>(y) * static_cast<size_t>(large.width) +
+                            static_cast<size_t>(x)] = static_cast<float>(std::lerp(above, below, fromY - y0));
+      }
+    }
+  return large;
 }
 
 /// As many samples as fit into `seconds`, by the cost of a first picture.
@@ -110,93 +129,6 @@ std::vector<Measured> overViews(const std::vector<Measured>& single, size_t sett
   return all;
 }
 
-}  // namespace
-
-std::string nameOf(const Setting& setting) {
-  std::ostringstream out;
-  out << setting.method;
-  if (setting.method != kTruth) {
-    out << " step " << setting.march.stepVoxels;
-    if (setting.march.lightCache)
-      out << ", light cached every " << setting.march.cacheVoxels;
-    else
-      out << ", shadow step " << setting.march.shadowStepVoxels;
-    if (setting.octaves) out << ", octaves " << *setting.octaves;
-  }
-  out << ", " << setting.samples << " spp";
-  return out.str();
-}
-
-ViewedScene withSetting(const ViewedScene& view, const Setting& setting) {
-  ViewedScene changed = view;
-  changed.scene.march = setting.march;
-  if (setting.octaves) changed.scene.octaves.count = *setting.octaves;
-  return changed;
-}
-
-std::vector<Setting> settingsFor(const std::vector<std::string>& methods, const Scene& scene) {
-  std::vector<Setting> settings;
-  Setting setting;
-  const auto add = [&](unsigned samples) {
-    setting.samples = samples;
-    setting.name = nameOf(setting);
-    settings.push_back(setting);
-  };
-  for (const std::string& method : methods) {
-    setting = {};
-    setting.method = method;
-    setting.march = scene.march;
-    if (method == kTruth) {
-      for (const unsigned samples : {1u, 4u, 16u, 64u, 256u}) add(samples);
-      continue;
-    }
-    for (const double step : {8.0, 4.0, 2.0, 1.0, 0.5})
-      for (const unsigned samples : {1u, 4u, 16u}) {
-        setting.march.stepVoxels = step;
-        setting.march.lightCache = true;
-        setting.march.cacheDepth = std::numeric_limits<double>::max();
-        add(samples);
-        setting.march.lightCache = false;
-        setting.march.shadowStepVoxels = 2.0 * step;
-        add(samples);
-      }
-    setting.march = scene.march;
-    if (scene.octaves.count.value_or(0) > 0)
-      for (int octaves = 0; octaves <= 8; octaves += 2) {
-        setting.octaves = octaves;
-        add(4);
-      }
-  }
-  std::stable_sort(settings.begin(), settings.end(),
-                   [](const Setting& a, const Setting& b) { return guessedCost(a) < guessedCost(b); });
-  return settings;
-}
-
-std::vector<SweepView> viewsFor(const ViewedScene& view) {
-  std::vector<SweepView> views{{"as given", view}};
-  const glm::dvec3 ahead = glm::normalize(view.camera.target - view.camera.position);
-  const glm::dvec3 right = glm::normalize(glm::cross(ahead, view.camera.up));
-  constexpr double kAbove = 0.3;  // of the distance ahead: the sun's height
-  const auto lit = [&](const std::string& name, const glm::dvec3& toLight) {
-    SweepView changed{name, view};
-    for (Light& light : changed.view.scene.lights)
-      if (Sun* sun = std::get_if<Sun>(&light)) sun->toLight = glm::normalize(toLight + kAbove * view.up);
-    views.push_back(changed);
-  };
-  const bool hasSun = std::any_of(view.scene.lights.begin(), view.scene.lights.end(),
-                                  [](const Light& light) { return std::holds_alternative<Sun>(light); });
-  if (hasSun) lit("sun behind the cloud", ahead);
-  const double distance = glm::length(view.camera.target - view.camera.position);
-  SweepView side{"camera from the side", view};
-  side.view.camera.position = view.camera.target + distance * glm::normalize(right + kAbove * view.up);
-  side.view.camera.up = view.up;
-  views.push_back(side);
-  if (hasSun) lit("sun behind the camera", -ahead);
-  return views;
-}
-
-namespace {
-
 std::vector<CostAndError> costsOf(const std::vector<Measured>& points) {
   std::vector<CostAndError> costs;
   for (const Measured& m : points) costs.push_back({m.milliseconds, m.error.relativeRmse});
@@ -233,7 +165,7 @@ SweepResult sweep(const BrickVolume& bricks, const ViewedScene& given, const Swe
     for (size_t s = 0; s < lastCost.size(); ++s) expected += tried[s] ? lastCost[s] : 0.0;
     if (viewsDone > 0 &&
         expected + kTruthShare * options.seconds / static_cast<double>(views.size()) > left) {
-      result.leftOut.push_back("the view '" + view.name + "'");
+      result.leftOut.push_back("the view '" + view.name + "', for want of time");
       continue;
     }
     const Picture truth = truthWithin(made, view.view, options,
@@ -247,18 +179,26 @@ SweepResult sweep(const BrickVolume& bricks, const ViewedScene& given, const Swe
       progress.advance();
       if (!tried[s]) continue;
       const Setting& setting = result.settings[s];
+      if (options.width % setting.coarser != 0 || options.height % setting.coarser != 0) {
+        tried[s] = false;
+        result.leftOut.push_back("'" + setting.name + "': the picture's edges are no multiples of it");
+        continue;
+      }
       double& rate = rates[{setting.method, setting.march.lightCache}];
       if (viewsDone == 0 && secondsSince(start) + rate * guessedCost(setting) > until) {
         tried[s] = false;
-        result.leftOut.push_back("'" + setting.name + "'");
+        result.leftOut.push_back("'" + setting.name + "', for want of time");
         continue;
       }
       const auto before = Clock::now();
       Method& method = made.at(setting.method);
       PictureCost cost;
       const Picture picture =
-          method.render(withSetting(view.view, setting), requestOf(options, setting.samples, 0), cost);
-      Measured measured{s, view.name, cost.milliseconds, cost.densitySamplesPerPixel,
+          enlarged(method.render(withSetting(view.view, setting),
+                                 requestOf(options, setting.samples, 0, setting.coarser), cost),
+                   setting.coarser);
+      const double pixels = 1.0 / (setting.coarser * setting.coarser);  // rendered, a pixel of the picture
+      Measured measured{s, view.name, cost.milliseconds, pixels * cost.densitySamplesPerPixel,
                         compareWithHalves(picture, truth)};
       result.single.push_back(measured);
       lastCost[s] = secondsSince(before);

@@ -18,11 +18,16 @@ struct Setting {
   unsigned samples = 1;
   MarchSettings march;
   std::optional<int> octaves;  // none: the scene's
+  bool chord = false;          // light by the chord; else as the scene says
+  bool powder = false;         // on; else as the scene says
+  int coarser = 1;             // pixels along an edge that one rendered pixel stands for, enlarged linearly
 };
 
+/// A guess of relative cost, for order alone.
+double guessedCost(const Setting& setting);
 /// "march step 0.5, light cached every 2.67, 4 spp".
 std::string nameOf(const Setting& setting);
-/// The view with a setting's march and octaves.
+/// The view with all of a setting that is the scene's.
 ViewedScene withSetting(const ViewedScene& view, const Setting& setting);
 
 /// A camera and a light to measure under.
@@ -55,7 +60,7 @@ struct SweepResult {
   std::vector<Measured> all;     // settings measured under every view that was looked at
   std::vector<size_t> front;     // indices into `all`: no other is both faster and more accurate; by time
   size_t knee = 0;               // index into `front` of the point farthest below the line between its ends
-  std::vector<std::string> leftOut;  // what did not fit into the time, as sentences
+  std::vector<std::string> leftOut;  // what was not measured, and why
   struct Shot {
     std::string name;  // of the setting, or "truth"
     Picture picture;

@@ -160,10 +160,9 @@ TEST(ErrorRequest, MeasuresAWholePictureOnItsSparseGrid) {
 
 TEST(ErrorRequest, WhatHasNoTruthIsRefused) {
   ViewedScene view;
-  EXPECT_NO_THROW(requireTruth(view, false));
-  EXPECT_THROW(requireTruth(view, true), InputError);
+  EXPECT_NO_THROW(requireTruth(view));
   view.scene.look = Look::report;
-  EXPECT_THROW(requireTruth(view, false), InputError);
+  EXPECT_THROW(requireTruth(view), InputError);
 }
 
 TEST(ErrorRequest, TruthHasTheOrdersThatTheSceneAsksFor) {

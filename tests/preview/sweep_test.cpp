@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <set>
 
 #include "base/chart.h"
 #include "base/figures.h"
@@ -89,6 +92,72 @@ TEST(Pareto, KneeIsFarthestBelowTheLine) {
   EXPECT_FALSE(onFront(front, points.size()));
   EXPECT_FALSE(isKnee({}, 0, 0));
   EXPECT_EQ(kneeOf(points, {0, 3}), 0u);
+}
+
+TEST(Sweep, TriesEveryKindOfSettingOnce) {
+  Scene scene;
+  scene.octaves.count = 2;
+  const std::vector<Setting> settings = settingsFor({"march", "cube", "dda", "reference"}, scene);
+  std::set<std::string> names;
+  for (const Setting& setting : settings)
+    EXPECT_TRUE(names.insert(setting.name).second) << setting.name << " twice";
+  for (int octaves = 0; octaves <= 8; ++octaves)
+    EXPECT_EQ(names.count("march step 1, light cached every 2.67, octaves " + std::to_string(octaves) +
+                          ", voxels up to 1 px, 4 spp"),
+              1u)
+        << octaves;
+  for (const char* part : {"light by the chord", "powder", "texels r8,", "texels r16f", "texels r32f",
+                           "up to 4 px", "1/2 of the resolution", "1/4 of the resolution", "shadow step 8",
+                           "cube step 1", "dda light cached", "dda shadow step", "reference, 256 spp"})
+    EXPECT_TRUE(std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return name.find(part) != std::string::npos;
+    })) << part;
+  ViewedScene view;
+  for (const Setting& setting : settings) {
+    const Scene set = withSetting(view, setting).scene;
+    EXPECT_EQ(set.lightTransmittance == LightTransmittance::chord, setting.chord);
+    EXPECT_EQ(set.powder.on.value_or(false), setting.powder);
+  }
+}
+
+/// A method whose pictures rise evenly from left to right, whatever their size.
+struct Slope : Method {
+  void setVolume(const BrickVolume&) override {}
+  Picture render(const ViewedScene&, const PictureRequest& request, PictureCost& cost) override {
+    Picture picture;
+    picture.width = request.width;
+    picture.height = request.height;
+    for (const char* name :
+         {"R", "G", "B", "A", "half1.R", "half1.G", "half1.B", "half2.R", "half2.G", "half2.B"})
+      picture.add(name);
+    for (size_t plane = 0; plane < picture.planes.size(); ++plane)
+      for (size_t i = 0; i < picture.planes[plane].size(); ++i)
+        picture.planes[plane][i] = plane == 3
+                                       ? 1.0f
+                                       : (static_cast<float>(i % static_cast<size_t>(request.width)) + 0.5f) /
+                                             static_cast<float>(request.width);
+    cost.milliseconds = 1e-3 * request.width * request.height;
+    return picture;
+  }
+};
+
+TEST(Sweep, SmallerPicturesAreEnlargedAndHeldAgainstWhatTheyStandFor) {
+  const auto make = [](const MethodOptions&) -> std::unique_ptr<Method> { return std::make_unique<Slope>(); };
+  SweepOptions options;
+  options.methods = {{"march", "", make}, {"reference", "", make}};
+  options.quiet = true;
+  options.width = 64;
+  options.height = 32;
+  const SweepResult result = sweep(BrickVolume{}, ViewedScene{}, options);
+  EXPECT_TRUE(result.leftOut.empty());
+  size_t smaller = 0;
+  for (const Measured& m : result.all) {
+    const int coarser = result.settings[m.setting].coarser;
+    // Linear but for the outermost half pixels of the smaller picture, which are held.
+    EXPECT_LE(m.error.relativeRmse, coarser == 1 ? 1e-6 : 0.01 * coarser);
+    smaller += coarser > 1 ? 1 : 0;
+  }
+  EXPECT_EQ(smaller, 2u);
 }
 
 TEST(Figures, HaveTheirDigits) {
