@@ -32,13 +32,16 @@ struct Choice {
   double seconds = 0.0;
 };
 
-/// Rays that a choice is measured along, and the share of the tolerance that it may use up: the largest
-/// difference of other rays lies a little higher.
+/// Rays that the search measures along; rays that what it found is confirmed by; and the share of the
+/// tolerance that either may use up: the largest difference of other rays may lie higher, by half where few
+/// of ten thousand find the worst place.
 inline constexpr uint64_t kChoiceRays = 10000;
+inline constexpr uint64_t kConfirmingRays = 50000;
 inline constexpr double kChoiceShare = 0.8;
 
 /// Chooses for an asset with a tolerance: halves the voxels until the tolerance holds, bisects between the
-/// last two sizes, then takes half precision and octaves away where that keeps it. Sequences are measured at
+/// last two sizes, then takes half precision and octaves away where that keeps it. What is left is confirmed
+/// by other rays, and given its octaves again and finer voxels until they hold too. Sequences are measured at
 /// their first, middle and last frame. The same on any number of threads and for any part of the frames.
 /// Throws InputError where the tolerance asks for more voxels than is measured, saying what was reached, and
 /// where the asset cannot be baked.

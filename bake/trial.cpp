@@ -12,6 +12,9 @@
 namespace nephele {
 namespace {
 
+// Voxels so small that no noise has faded: what has faded altogether has no support.
+constexpr double kNoneFaded = 1e-6;
+
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -99,7 +102,7 @@ TrialBaker::Extent TrialBaker::extent() const {
       continue;
     }
     BuildContext context = contextOf(state_->pipeline, state_->asset, state_->frames[n]);
-    context.voxelSize = 1.0;  // no support depends on it
+    context.voxelSize = kNoneFaded;
     all = hull(all, buildField(*state_->asset.density, context)->support());
   }
   return extentOf(all);

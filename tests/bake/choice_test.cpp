@@ -121,6 +121,15 @@ TEST_F(ChoiceTest, StandsInTheFileWhichIsThenUpToDate) {
   EXPECT_FALSE(bakeAll(recipe(kSphere, "tolerance: 9%"), options)[0].skipped);
 }
 
+TEST_F(ChoiceTest, NoiseFinerThanAUnitEndsWhereItsBoxDoes) {
+  const Pipeline pipeline =
+      recipe("multiply: [{ box: { size: [1, 1, 1] } }, { max: [{ perlin: { cell_size: 0.4 } }, 0] }]",
+             "tolerance: 10%");
+  const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
+  EXPECT_LT(choice.asset.voxelSize, 0.4);
+  EXPECT_LE(choice.measured, kChoiceShare * choice.asked);
+}
+
 TEST_F(ChoiceTest, RefusesWhatNeverEnds) {
   const Pipeline pipeline = recipe("constant: { value: 1 }", "tolerance: 10%");
   try {
