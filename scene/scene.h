@@ -157,7 +157,7 @@ struct MarchSettings {
   double shadowGrowth = 1.15;     // of each such step over the one before, from 1 (none) to 2
   bool adaptive = true;           // steps grow where the medium is thin; else all are stepVoxels
   bool lightCache = true;         // light from a coarse volume; else marched for at every point
-  double cacheVoxels = 2.67;      // between samples of that volume, from 1 to 16; 16/n is reached
+  double cacheVoxels = 2.0;       // between samples of that volume, from 1 to 16; 16/n is reached
   double skyCacheVoxels = 5.34;   // the same for what the sky scatters
   double cacheNearVoxels = 8.0;   // marched towards a light before the volume is asked, from 0 to 16
   int cacheNearSteps = 4;         // in so many steps, from 0 to 16

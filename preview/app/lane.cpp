@@ -67,6 +67,7 @@ void Lane::drawQuick(const LaneTools& tools) {
   // Through the pixels' centres: a single sample anywhere else would shift the picture.
   constexpr glm::vec2 kCentre(0.5f, 0.5f);
   tools.pass.draw(tools.atlas, *quick_, kCentre, 0, {0, 0, width, height});
+  sharpenQuick(tools);
   finishGl("marching a moving picture");
   const double seconds = secondsSince(start);
   stats_.quickMilliseconds = seconds * 1e3;
@@ -78,6 +79,15 @@ void Lane::drawQuick(const LaneTools& tools) {
   if (std::max(seconds, before) < kQuickSecondsLow) divisor_ = std::max(divisor_ - 1, 1);
   if (!scaleKnown_) chooseScale(*quick_);
   quickNeeded_ = false;
+}
+
+void Lane::sharpenQuick(const LaneTools& tools) {
+  if (divisor_ == 1 || rowOf(request_.show).writes != MarchWrites::radiance) {
+    sharpened_.reset();
+    return;
+  }
+  fitFilm(sharpened_, quick_->width(), quick_->height());
+  tools.sharpen.draw(*quick_, *sharpened_);
 }
 
 void Lane::beginRest(const LaneTools& tools, const RestGoal& goal) {
@@ -145,6 +155,7 @@ void Lane::measureNoise(const RestGoal& goal) {
 
 const Film* Lane::best() const {
   if (accumulator_ && accumulator_->wholeSamples() > 0) return &*full_;
+  if (sharpened_) return &*sharpened_;
   return quick_ ? &*quick_ : nullptr;
 }
 
@@ -158,7 +169,9 @@ LaneStats Lane::stats() const {
 }
 
 uint64_t Lane::gpuBytes() const {
-  return (quick_ ? quick_->gpuBytes() : 0) + (full_ ? full_->gpuBytes() : 0);
+  uint64_t bytes = 0;
+  for (const auto& film : {&quick_, &sharpened_, &full_}) bytes += *film ? (*film)->gpuBytes() : 0;
+  return bytes;
 }
 
 }  // namespace nephele

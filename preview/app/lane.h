@@ -6,6 +6,7 @@
 
 #include "preview/app/views.h"
 #include "preview/gpu/accumulator.h"
+#include "preview/gpu/sharpen.h"
 #include "preview/viewed_scene.h"
 
 namespace nephele {
@@ -29,6 +30,7 @@ struct LaneTools {
   const BrickVolume& bricks;
   const BrickAtlas& atlas;
   MarchPass& pass;
+  const SharpenPass& sharpen;
   unsigned seed;
 };
 
@@ -67,6 +69,8 @@ class Lane {
   uint64_t gpuBytes() const;
 
  private:
+  /// What is shown of quick_.
+  void sharpenQuick(const LaneTools& tools);
   void beginRest(const LaneTools& tools, const RestGoal& goal);
   void lookAtFirstSample();
   void measureNoise(const RestGoal& goal);
@@ -79,6 +83,7 @@ class Lane {
   bool quickNeeded_ = false;
   bool scaleKnown_ = false;  // for the view that is shown
   std::optional<Film> quick_;
+  std::optional<Film> sharpened_;  // of quick_, where that is enlarged and lit
   std::optional<Film> full_;
   std::optional<Accumulator> accumulator_;
   std::vector<float> firstHalf_;  // sums of radiance when half of check_ samples were whole

@@ -89,7 +89,8 @@ LaneTools Viewer::toolsFor(const Lane& lane, bool moving) {
   if (r.show == View::slice) pass.setSlice(r.slice.axis, slicePlace(r.slice, *bricks_, atlas.layout().frame));
   pass.setEnvironment(r.view.environmentMap);
   pass.useCache(which);
-  return {*bricks_, atlas, pass, seed_};
+  if (!sharpen_) sharpen_.emplace();
+  return {*bricks_, atlas, pass, *sharpen_, seed_};
 }
 
 void Viewer::restart(Side side, const LaneRequest& request) {

@@ -85,6 +85,7 @@ class Viewer {
       displays_;  // the last: a lat-long picture; built when first needed
   std::array<GlBuffer, kSideCount> displayParameters_;  // for rays to the sky
   GlVertexArray noVertices_;
+  std::optional<SharpenPass> sharpen_;  // made when first needed
   std::array<std::optional<Lane>, kSideCount> lanes_;
 };
 

@@ -110,8 +110,8 @@ void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameter
   };
   constexpr uint64_t kChannels = 4;
   constexpr int kSkyHalves = 2, kUnused = 2;  // samples along the edge of what is bound and never read
-  // Also where they are not asked for now: between moving and resting pictures the shape then stays.
-  const bool columns = parameters.cacheShape.x > 0 && parameters.counts.x > 0;
+  const bool columns = parameters.cache.x > 0.0f && parameters.counts.x > 0;
+  hasColumns_ = columns;
   columns_ = make(columns ? parameters.cacheShape.x : kUnused, columns ? parameters.counts.x : 1,
                   floats_ ? GL_R32F : GL_R16F, channelBytes);
   const bool sky = parameters.cacheShape.y > 0;
@@ -166,7 +166,10 @@ MarchParameters LightCache::knownAfter(const MarchParameters& parameters) const 
 }
 
 bool LightCache::plan(const BrickAtlas& atlas, const MarchParameters& parameters) {
-  const bool anew = atlasSerial_ != atlas.serial() || !known_ || !sameShape(*known_, parameters);
+  // Columns that were asked for once stay: between moving and resting pictures the shape does not change.
+  const bool lacksColumns = parameters.cache.x > 0.0f && parameters.counts.x > 0 && !hasColumns_;
+  const bool anew =
+      atlasSerial_ != atlas.serial() || !known_ || lacksColumns || !sameShape(*known_, parameters);
   if (anew) {
     tasks_.clear();
     known_.reset();

@@ -71,7 +71,8 @@ class LightCache {
   GlTexture blockIndex_, columns_, sky_;
   GlBuffer blocks_, cost_;
   uint32_t blockTotal_ = 0;
-  bool bare_ = false;  // it holds nothing yet that could be shown
+  bool hasColumns_ = false;  // or columns_ is bound and never read
+  bool bare_ = false;        // it holds nothing yet that could be shown
   uint64_t gpuBytes_ = 0;
   uint64_t atlasSerial_ = 0, atlasContents_ = 0;
   std::optional<shared::MarchParameters> known_;
