@@ -328,10 +328,13 @@ void checkDomains(const Pipeline& pipeline, const std::vector<BakeJob>& jobs, co
   std::set<const Asset*> checked;
   for (const BakeJob& job : jobs) {
     const Asset& asset = *job.asset;
-    if (!asset.density || asset.tolerance || !checked.insert(&asset).second) continue;
+    if (!asset.density || !checked.insert(&asset).second) continue;
     try {
-      checkDomain(*buildField(*asset.density, contextOf(pipeline, asset, job.frame)),
-                  settingsOf(asset, options));
+      const FieldPtr field = buildField(*asset.density, contextOf(pipeline, asset, job.frame));
+      if (asset.tolerance)
+        checkEnds(*field);  // its voxels are yet to be chosen
+      else
+        checkDomain(*field, settingsOf(asset, options));
     } catch (const VoxelizeError& error) {
       out.add(asset.where, refusalOf(asset, error));
     }

@@ -72,7 +72,8 @@ struct BakeRecord {
 std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& options);
 
 /// Refuses, for all assets at once, densities that no grid can hold (checkDomain, bake/voxelize.h), each at
-/// its first frame among the jobs. Particles and tolerances find their own limits. Throws InputError.
+/// its first frame among the jobs; where a tolerance has yet to choose the voxels, what fills all of space
+/// (checkEnds). Particles find their own limits. Throws InputError.
 void checkDomains(const Pipeline& pipeline, const std::vector<BakeJob>& jobs, const BakeOptions& options);
 
 /// Bakes what selectJobs() gives, after checkDomains() of what is not up to date. Each file appears whole or

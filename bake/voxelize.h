@@ -45,6 +45,9 @@ class VoxelizeError : public std::runtime_error {
 /// Called from worker threads with the number of leaves done and the number known; may be empty.
 using LeafProgress = std::function<void(uint64_t leaves, uint64_t total)>;
 
+/// Throws VoxelizeError where the density fills all of space along an axis, whatever the voxels.
+void checkEnds(const Field& field);
+
 /// Throws VoxelizeError where no grid can hold the density: endless or more than 10^12 voxels of box, or
 /// surely more than memoryBytes. That is found from bounds of cubes of 128 voxels, and where these do not
 /// rule it out from 4000 places among them, at most a second or so. What passes may still be refused by

@@ -44,6 +44,15 @@ VoxelizeError tooMuchMemory(double leaves, uint64_t available) {
                        inGigabytes(double(available)) + " are available; use larger voxels");
 }
 
+void checkEnds(const Field& field) {
+  const Box support = field.support();
+  if (support.empty()) return;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!std::isfinite(support.low[axis]) || !std::isfinite(support.high[axis]))
+      throw VoxelizeError(std::string("the density fills all of space along ") + "xyz"[axis] +
+                          "; multiply it by a shape that ends, as a sphere");
+}
+
 LeafFiller::LeafFiller(const Field& field, const VoxelizeSettings& settings)
     : field_(field),
       settings_(settings),
@@ -55,6 +64,7 @@ LeafFiller::LeafFiller(const Field& field, const VoxelizeSettings& settings)
 }
 
 openvdb::CoordBBox LeafFiller::box() const {
+  checkEnds(field_);
   const Box support = field_.support();
   if (support.empty()) return {};
   double voxels = 1.0;
@@ -62,9 +72,6 @@ openvdb::CoordBBox LeafFiller::box() const {
   for (int axis = 0; axis < 3; ++axis) {
     const double low = std::floor(support.low[axis] / settings_.voxelSize),
                  high = std::ceil(support.high[axis] / settings_.voxelSize);
-    if (!std::isfinite(low) || !std::isfinite(high))
-      throw VoxelizeError(std::string("the density fills all of space along ") + "xyz"[axis] +
-                          "; multiply it by a shape that ends, as a sphere");
     if (low < -kLargestIndex || high > kLargestIndex)
       throw VoxelizeError("the density reaches voxel " + shown(std::max(-low, high)) + " along " +
                           "xyz"[axis] + ", beyond 2^30; use larger voxels or stay nearer to the origin");

@@ -128,6 +128,8 @@ BAKE = [
          "pipeline.yaml:6:3: error: asset 'b': the density fills all of space", recipe=TWO_DOMAINS, note="both assets at once"),
     says("bake pipeline.yaml", 2, "pipeline.yaml:3:3: error: asset 'a'", "pipeline.yaml:6:3: error: asset 'b'",
          recipe=TWO_DOMAINS, note="both assets at once"),
+    says("bake pipeline.yaml --dry-run", 2, "pipeline.yaml:3:3: error: asset 'ball': the density fills all of space",
+         recipe=GOOD_RECIPE.replace("voxel_size: 0.1", "tolerance: 3%").replace(SPHERE, "fbm: {}"), note="voxels yet to be chosen"),
     says("bake pipeline.yaml --dry-run", 2, "pipeline.yaml:3:3: error: asset 'ball': the density fills about ",
          "GB of memory, and ", "GB are available; use larger voxels",
          recipe=GOOD_RECIPE.replace("0.1", "0.000205").replace("falloff: 0.5", "falloff: 1.0"), note="9.3e11 voxels"),
