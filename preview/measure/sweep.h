@@ -25,7 +25,7 @@ struct Setting {
 
 /// A guess of relative cost, for order alone.
 double guessedCost(const Setting& setting);
-/// "march step 0.5, light cached every 2.67, 4 spp".
+/// "march step 0.5, light cached every 2, 4 spp".
 std::string nameOf(const Setting& setting);
 /// The view with all of a setting that is the scene's.
 ViewedScene withSetting(const ViewedScene& view, const Setting& setting);

@@ -102,7 +102,7 @@ TEST(Sweep, TriesEveryKindOfSettingOnce) {
   for (const Setting& setting : settings)
     EXPECT_TRUE(names.insert(setting.name).second) << setting.name << " twice";
   for (int octaves = 0; octaves <= 8; ++octaves)
-    EXPECT_EQ(names.count("march step 1, light cached every 2.67, octaves " + std::to_string(octaves) +
+    EXPECT_EQ(names.count("march step 1, light cached every 2, octaves " + std::to_string(octaves) +
                           ", voxels up to 1 px, 4 spp"),
               1u)
         << octaves;
