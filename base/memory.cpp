@@ -42,8 +42,10 @@ uint64_t availableMemory() {
   const uint64_t ofMachine = kilobytes == kEndless
                                  ? uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE))
                                  : kilobytes * 1024;
-  const uint64_t ofGroup =
-      left(numberIn("/sys/fs/cgroup/memory.max", ""), numberIn("/sys/fs/cgroup/memory.current", ""));
+  // Of what the group holds, copies of files that are not in use are given up on demand.
+  const uint64_t ofGroup = left(numberIn("/sys/fs/cgroup/memory.max", ""),
+                                left(numberIn("/sys/fs/cgroup/memory.current", ""),
+                                     numberIn("/sys/fs/cgroup/memory.stat", "inactive_file")));
   return std::min({ofMachine, ofGroup, leftOfAddresses()});
 }
 
