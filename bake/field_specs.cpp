@@ -2,9 +2,9 @@
 #include "bake/field_specs.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
+#include "base/figures.h"
 #include "base/files.h"
 #include "base/hash.h"
 
@@ -22,9 +22,7 @@ constexpr int kMostNested = 100;
 constexpr double kMostUses = 10000.0;
 
 std::string tooMany(double uses) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", uses);
-  return std::string("this comes to ") + text +
+  return "this comes to " + number(uses, 3) +
          " fields, counting each use of a name or an alias; more than 10000 are not evaluated";
 }
 
@@ -232,7 +230,7 @@ FieldSpecPtr FieldReader::readRow(const FieldRow& row, const yaml::Node& body, c
     good = false;
   }
   // Also where something is missing: all that is wrong is told at once.
-  good = validate(row, *spec, body) && good;
+  good = validate(row, *spec, body, good ? Arguments::Given::all : Arguments::Given::some) && good;
   if (!good) return nullptr;
   for (const auto& [name, children] : spec->children)
     for (const FieldSpecPtr& child : children) {
@@ -250,11 +248,12 @@ FieldSpecPtr FieldReader::readRow(const FieldRow& row, const yaml::Node& body, c
   return spec;
 }
 
-bool FieldReader::validate(const FieldRow& row, const FieldSpec& spec, const yaml::Node& body) {
+bool FieldReader::validate(const FieldRow& row, const FieldSpec& spec, const yaml::Node& body,
+                           Arguments::Given given) {
   if (!row.validate) return true;
   Complaint complaint;
   try {
-    complaint = row.validate(Arguments(spec.values));
+    complaint = row.validate(Arguments(spec.values, given));
   } catch (const Arguments::Missing&) {  // told already, and needed to go on
     return false;
   } catch (const InputError& error) {  // in a file that the recipe names

@@ -34,7 +34,7 @@ class FieldReader {
                      FieldSpec& spec);
   bool readFields(const Parameter& parameter, const std::string& what, const yaml::Node& node,
                   FieldSpec& spec);
-  bool validate(const FieldRow& row, const FieldSpec& spec, const yaml::Node& body);
+  bool validate(const FieldRow& row, const FieldSpec& spec, const yaml::Node& body, Arguments::Given given);
   std::vector<std::string_view> knownNames() const;
 
   Diagnostics& out_;

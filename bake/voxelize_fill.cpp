@@ -6,10 +6,10 @@
 
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "base/error.h"
+#include "base/figures.h"
 
 namespace nephele {
 
@@ -21,18 +21,11 @@ using openvdb::Coord;
 constexpr double kLargestIndex = 1073741824.0;
 // A recipe that asks for a larger box than this is refused: dense it would take 4 TB.
 constexpr double kMostVoxels = 1e12;
-// The way down begins with the tree's largest tiles.
-constexpr int kRootEdge = 4096;
-constexpr float kHalfLargest = 65504.0f;
 constexpr int kWordBits = 64;
 // What a leaf that is yet to be filled takes: its origin, its sums, a pointer.
 constexpr uint64_t kCandidateBytes = 48;
 
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string shown(double value) { return number(value, 3); }
 
 std::string inGigabytes(double bytes) { return shown(bytes * 1e-9) + " GB"; }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bake/voxelize.h"
+#include "bake/voxelize_grid.h"
 #include "bake/voxelize_kernels.h"
-#include "volume/vdb_file.h"
 
 namespace nephele {
 
@@ -38,8 +38,10 @@ inline constexpr uint64_t kLeafBytes = 2250;
 
 /// The edge of the cubes below the tree's top: its nodes', 128 voxels.
 inline constexpr int kCoarseEdge = 128;
+/// The edge of the tree's largest tiles, with which the way down begins.
+inline constexpr int kRootEdge = 4096;
 
-/// "holds about N voxels, which take N GB of memory; ...".
+/// "the density fills about N voxels, which take N GB of memory, ...".
 VoxelizeError tooMuchMemory(double leaves, uint64_t available);
 
 /// Every method is const and may be called from any number of threads; all throw VoxelizeError.
@@ -58,8 +60,6 @@ class LeafFiller {
 
   /// Whether bounds alone say what the leaf at `origin` holds: nothing, or one value.
   bool isSettled(const openvdb::Coord& origin) const;
-
-  const VoxelizeSettings& settings() const { return settings_; }
 
  private:
   struct Cube {

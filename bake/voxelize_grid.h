@@ -1,9 +1,13 @@
 // What stands behind voxelize.h's handle. Includes OpenVDB: only bake/voxelize* may include this.
 #pragma once
 
+#include "bake/fields/field.h"
 #include "volume/vdb_file.h"
 
 namespace nephele {
+
+/// The largest finite half.
+inline constexpr float kHalfLargest = 65504.0f;
 
 struct VoxelGrid {
   openvdb::FloatGrid::Ptr grid;
@@ -19,6 +23,14 @@ template <class Tree>
 void keepALeaf(Tree& tree) {
   if (tree.leafCount() > 0) return;
   if (const auto tile = tree.cbeginValueOn()) tree.touchLeaf(tile.getCoord());
+}
+
+/// Calls visit(origin) for every block of 8 voxels in a cube.
+template <class Visit>
+void forEachBlock(const openvdb::Coord& origin, int edge, const Visit& visit) {
+  for (int x = 0; x < edge; x += kBlockEdge)
+    for (int y = 0; y < edge; y += kBlockEdge)
+      for (int z = 0; z < edge; z += kBlockEdge) visit(origin.offsetBy(x, y, z));
 }
 
 }  // namespace nephele

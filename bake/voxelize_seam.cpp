@@ -17,14 +17,6 @@ using openvdb::Coord;
 // Leaves that are held at a time: 9 MB.
 constexpr size_t kLeavesAtATime = 4096;
 
-/// Calls visit(origin) for every block of 8 voxels in a cube.
-template <class Visit>
-void forEachBlock(const Coord& origin, int edge, const Visit& visit) {
-  for (int x = 0; x < edge; x += kBlockEdge)
-    for (int y = 0; y < edge; y += kBlockEdge)
-      for (int z = 0; z < edge; z += kBlockEdge) visit(origin.offsetBy(x, y, z));
-}
-
 /// The largest difference of two blocks; either may be a leaf, or one value.
 double apart(const DensityLeaf* a, float aValue, const DensityLeaf* b, float bValue) {
   double largest = 0.0;
@@ -56,7 +48,7 @@ class Comparison {
   void takeConstant(const ConstantCube& cube) {
     seen_.fill(openvdb::CoordBBox::createCube(cube.origin, cube.edge), true, true);
     // Tiles as the tree has them.
-    const int edge = cube.edge >= kRootTile ? kRootTile : cube.edge >= kCoarseEdge ? kCoarseEdge : kBlockEdge;
+    const int edge = cube.edge >= kRootEdge ? kRootEdge : cube.edge >= kCoarseEdge ? kCoarseEdge : kBlockEdge;
     for (int x = 0; x < cube.edge; x += edge)
       for (int y = 0; y < cube.edge; y += edge)
         for (int z = 0; z < cube.edge; z += edge)
@@ -103,8 +95,6 @@ class Comparison {
       });
     }
   }
-
-  static constexpr int kRootTile = 4096;
 
   const openvdb::FloatGrid& grid_;
   const LeafFiller filler_;

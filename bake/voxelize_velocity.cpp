@@ -15,8 +15,6 @@ namespace {
 
 using Leaf = openvdb::Vec3STree::LeafNodeType;
 
-constexpr float kHalfLargest = 65504.0f;
-
 float stored(float value, const openvdb::Coord& leaf, bool half) {
   if (!std::isfinite(value) || (half && std::abs(value) > kHalfLargest))
     throw VoxelizeError("the velocity reaches " + std::to_string(value) + " in the block at voxel (" +
@@ -44,10 +42,6 @@ double fillLeaf(Leaf& leaf, const VoxelizeSettings& settings, const Evaluate& ev
   return largest;
 }
 
-}  // namespace
-
-namespace {
-
 /// Blocks of the tree's active tiles, which hold one density and maybe many velocities.
 std::vector<openvdb::Coord> blocksOfTiles(const openvdb::FloatTree& density) {
   std::vector<openvdb::Coord> blocks;
@@ -55,9 +49,7 @@ std::vector<openvdb::Coord> blocksOfTiles(const openvdb::FloatTree& density) {
   tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
   for (; tile; ++tile) {
     const openvdb::CoordBBox box = tile.getBoundingBox();
-    for (int x = box.min().x(); x <= box.max().x(); x += kBlockEdge)
-      for (int y = box.min().y(); y <= box.max().y(); y += kBlockEdge)
-        for (int z = box.min().z(); z <= box.max().z(); z += kBlockEdge) blocks.emplace_back(x, y, z);
+    forEachBlock(box.min(), box.dim().x(), [&](const openvdb::Coord& block) { blocks.push_back(block); });
   }
   return blocks;
 }

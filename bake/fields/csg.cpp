@@ -87,8 +87,7 @@ FieldRow intersectionRow() {
 FieldRow differenceRow() {
   return {"difference",
           "What is in its first input a and in none of the others b: min(a, max(a, 1) (1 - b)), b held "
-          "within 0 and "
-          "1. Where b is 0 nothing is taken away, where it is 1 all.",
+          "within 0 and 1. Where b is 0 nothing is taken away, where it is 1 all.",
           {kInputs},
           buildFold<Difference>};
 }

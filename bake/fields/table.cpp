@@ -31,7 +31,8 @@ const Parameter* listParameter(const FieldRow& row) {
 
 const Value& Arguments::at(std::string_view name) const {
   const auto found = values_.find(name);
-  if (found == values_.end()) throw Missing{name};
+  if (found == values_.end() && given_ == Given::some) throw Missing{};
+  NEPHELE_CHECK_EQ(found != values_.end() ? name : std::string_view("no such parameter"), name);
   return found->second;
 }
 

@@ -86,15 +86,15 @@ struct BuildContext {
   int mostOctaves = kAllOctaves;  // of a fractal sum; the rest is left out as if the grid could not hold it
 };
 
-/// Parameters by name, all in range; all present but where a recipe's errors are being collected.
+/// Parameters by name, all in range; all present, but for `some` where a recipe's errors are being collected.
 class Arguments {
  public:
-  /// Thrown where a parameter is asked for that is not there.
-  struct Missing {
-    std::string_view name;
-  };
+  enum class Given { all, some };
+  /// Thrown where only some are given, and one is asked for that is not. Of all it is our fault.
+  struct Missing {};
 
-  explicit Arguments(std::map<std::string, Value, std::less<>> values) : values_(std::move(values)) {}
+  explicit Arguments(std::map<std::string, Value, std::less<>> values, Given given = Given::all)
+      : values_(std::move(values)), given_(given) {}
   double number(std::string_view name) const { return std::get<double>(at(name)); }
   int64_t integer(std::string_view name) const { return std::get<int64_t>(at(name)); }
   const std::string& choice(std::string_view name) const { return std::get<std::string>(at(name)); }
@@ -112,6 +112,7 @@ class Arguments {
  private:
   const Value& at(std::string_view name) const;
   std::map<std::string, Value, std::less<>> values_;
+  Given given_;
 };
 
 /// The parameter at fault and a sentence, or nothing where all is well.
