@@ -28,6 +28,12 @@ std::string tooMany(double uses) {
 
 std::string tooDeep() { return "fields are nested deeper than " + std::to_string(kMostNested) + " levels"; }
 
+bool looksLikeNumber(const yaml::Node& node) {
+  return !node.quoted && !node.scalar.empty() &&
+         (std::isdigit(static_cast<unsigned char>(node.scalar.front())) ||
+          std::string_view("+-.").find(node.scalar.front()) != std::string_view::npos);
+}
+
 /// Reads [[x, y], …] with growing x.
 std::optional<Curve> readCurve(const yaml::Node& node, const std::string& what, const Range& range,
                                Diagnostics& out) {
@@ -149,6 +155,32 @@ FieldSpecPtr FieldReader::read(const yaml::NodePtr& node, const std::string& wha
   return spec;
 }
 
+yaml::NodePtr FieldReader::withoutNames(const yaml::NodePtr& node) const {
+  if (node->kind == yaml::Kind::scalar) {
+    const auto named = looksLikeNumber(*node) ? named_.end() : named_.find(node->scalar);
+    return named == named_.end() ? node : withoutNames(named->second);
+  }
+  const auto eachItem = [this](yaml::Node list) {
+    for (yaml::NodePtr& item : list.items) item = withoutNames(item);
+    return std::make_shared<yaml::Node>(std::move(list));
+  };
+  yaml::Node field = *node;
+  yaml::Entry& entry = field.entries.front();
+  if (entry.value->kind == yaml::Kind::sequence) {
+    entry.value = eachItem(*entry.value);
+  } else {
+    yaml::Node body = *entry.value;
+    for (yaml::Entry& value : body.entries)
+      for (const Parameter& parameter : findField(entry.key)->parameters) {
+        if (value.key != parameter.name) continue;
+        if (parameter.type == ParameterType::field) value.value = withoutNames(value.value);
+        if (parameter.type == ParameterType::fields) value.value = eachItem(*value.value);
+      }
+    entry.value = std::make_shared<yaml::Node>(std::move(body));
+  }
+  return std::make_shared<yaml::Node>(std::move(field));
+}
+
 FieldSpecPtr FieldReader::readNew(const yaml::Node& node, const std::string& what) {
   if (node.kind == yaml::Kind::scalar) return readName(node, what);
   if (node.kind != yaml::Kind::map || node.entries.size() != 1) {
@@ -166,10 +198,7 @@ FieldSpecPtr FieldReader::readNew(const yaml::Node& node, const std::string& wha
 }
 
 FieldSpecPtr FieldReader::readName(const yaml::Node& node, const std::string& what) {
-  const bool looksLikeNumber = !node.quoted && !node.scalar.empty() &&
-                               (std::isdigit(static_cast<unsigned char>(node.scalar.front())) ||
-                                std::string_view("+-.").find(node.scalar.front()) != std::string_view::npos);
-  if (looksLikeNumber) {
+  if (looksLikeNumber(node)) {
     const auto value = yaml::readNumber(node, what, kAny, out_);
     if (!value) return nullptr;
     auto spec = std::make_shared<FieldSpec>();

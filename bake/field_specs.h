@@ -24,6 +24,8 @@ class FieldReader {
   void readRest();
   /// The field, or nullptr after complaining.
   FieldSpecPtr read(const yaml::NodePtr& node, const std::string& what);
+  /// The same field with named fields written out where they are used. `node` must be one that read() took.
+  yaml::NodePtr withoutNames(const yaml::NodePtr& node) const;
 
  private:
   FieldSpecPtr readNew(const yaml::Node& node, const std::string& what);

@@ -17,12 +17,11 @@ InputFile inputFile(const std::string& name, const std::string& folder) {
   return {path, hasher.hex()};
 }
 
-/// The system without what changes no content: names of files stand as their contents elsewhere.
+/// The system without what changes no file: names of files stand as their contents elsewhere.
 std::string contentOf(ParticleSystem system) {
   for (Emitter& emitter : system.emitters) emitter.file.clear();
   system.erosionField = nullptr;
   system.checkpointEvery = 0;
-  system.writePoints.clear();
   return writeParticles(system);
 }
 
@@ -43,8 +42,10 @@ void readParticles(const yaml::Node& node, const std::string& folder, FieldReade
       for (const Diagnostic& d : error.diagnostics()) out.add(d.where, d.sentence, d.hint);
     }
   }
-  if (asset.particles->erosionField)
-    asset.erosion = fields.read(asset.particles->erosionField, "'field' of 'erosion'");
+  yaml::NodePtr& field = asset.particles->erosionField;
+  if (field) asset.erosion = fields.read(field, "'field' of 'erosion'");
+  // The system is written into files, where the recipe's names mean nothing.
+  if (asset.erosion) field = fields.withoutNames(field);
 }
 
 void hashParticles(Hasher& hasher, const Asset& asset) {
@@ -63,6 +64,7 @@ std::string simulationHash(const Pipeline& pipeline, const Asset& asset) {
   moving.shutter = plain.shutter;
   moving.erosion = plain.erosion;
   moving.grids = plain.grids;
+  moving.writePoints = plain.writePoints;
   moving.massTolerance = plain.massTolerance;
   moving.boxMin = moving.boxMax = plain.boxMin;
   moving.stableBox = plain.stableBox;

@@ -1,5 +1,5 @@
-// Leaves of sums → leaves as stored, cut, rounded and counted. Depends on splat_leaf.h, voxelize_kernels.h,
-// OpenVDB.
+// Leaves of sums → leaves as stored, cut, rounded and counted. Depends on splat_leaf.h, splat_places.h,
+// voxelize_kernels.h, OpenVDB.
 #include "bake/splat_leaf.h"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "bake/splat_places.h"
 #include "bake/voxelize_kernels.h"
 
 namespace nephele {
@@ -40,6 +41,10 @@ SplatLeaves::SplatLeaves(const SplatSettings& settings) : settings_(settings) {
   if (!settings_.box) return;
   const double h = settings_.voxelSize;
   for (int axis = 0; axis < 3; ++axis) {
+    const double low = settings_.box->low[axis], high = settings_.box->high[axis];
+    if (std::max(std::abs(low), std::abs(high)) > kLargestIndex * h)
+      throw SplatError("the frames' box reaches from " + shown(low) + " to " + shown(high) + " along " +
+                       "xyz"[axis] + ", beyond voxel 2^30; use larger voxels, or another 'box'");
     box_.min()[axis] = int(std::ceil(settings_.box->low[axis] / h));
     box_.max()[axis] = int(std::floor(settings_.box->high[axis] / h));
   }

@@ -11,8 +11,6 @@
 namespace nephele {
 namespace {
 
-// Index coordinates stay well inside 32 bits, so that no neighbour or box overflows.
-constexpr double kLargestIndex = 1073741824.0;
 // A box larger than this is refused: dense it would take 4 TB.
 constexpr double kMostVoxels = 1e12;
 // A particle this wide takes 4·10⁹ voxels; recipes that ask for more have the wrong voxel size.

@@ -11,6 +11,8 @@
 namespace nephele {
 
 inline constexpr int kTileEdge = 64;
+// Index coordinates stay well inside 32 bits, so that no neighbour or box overflows.
+inline constexpr double kLargestIndex = 1073741824.0;
 
 /// How a particle becomes voxels, in the order in which a leaf takes them.
 enum class SplatWay { round, point, shaped };

@@ -1,6 +1,7 @@
 // CSV and PLY files of points. Depends on base alone.
 #include "particles/point_file.h"
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -42,8 +43,8 @@ std::vector<std::string_view> partsOf(std::string_view line, char mark) {
   return parts;
 }
 
-/// Which array takes each column; nullptr where none does. Refuses a file without x, y, z or with half a
-/// velocity.
+/// Which array takes each column; nullptr where none does. Refuses a file without x, y, z, with half a
+/// velocity, or with two columns of one name.
 std::vector<std::vector<float>*> arraysOf(PointSet& points, const std::vector<std::string_view>& names,
                                           const SourceLocation& where) {
   std::vector<std::vector<float>*> arrays;
@@ -52,6 +53,11 @@ std::vector<std::vector<float>*> arraysOf(PointSet& points, const std::vector<st
     for (const PointSet::Column& column : PointSet::columns())
       if (name == column.name && column.values != &PointSet::mass) arrays.back() = &(points.*column.values);
   }
+  for (const auto* const values : arrays)
+    if (values && std::count(arrays.begin(), arrays.end(), values) > 1) {
+      const size_t at = size_t(std::find(arrays.begin(), arrays.end(), values) - arrays.begin());
+      throw InputError(where, "names the column '" + std::string(names[at]) + "' twice");
+    }
   const auto has = [&](std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };

@@ -27,8 +27,8 @@ struct PointSet {
 /// Reads a .csv (a line of column names, then a line of numbers a point, separated by commas) or a .ply
 /// (element `vertex`, ascii or binary little-endian). x, y, z are needed; vx, vy, vz, radius, density, life,
 /// temperature and age are read where they stand, other columns passed over. Throws InputError with file and,
-/// in text, line: on what cannot be read, a missing column, a row that is short, numbers that are not finite
-/// or beyond 1e9 in size, a radius or life of 0 or less, a density below 0.
+/// in text, line: on what cannot be read, a column that is missing or there twice, a row that is short,
+/// numbers that are not finite or beyond 1e9 in size, a radius or life of 0 or less, a density below 0.
 PointSet readPointFile(const std::string& path);
 PointSet parsePointCsv(const std::string& content, const std::string& path);
 PointSet parsePointPly(const std::string& content, const std::string& path);

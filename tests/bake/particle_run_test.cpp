@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <sstream>
 
 #include "bake/particle_sources.h"
 #include "bake/run.h"
 #include "tests/scratch_folder.h"
+#include "volume/difference.h"
 #include "volume/info.h"
 
 namespace nephele::test {
@@ -133,6 +135,11 @@ TEST(ParticleRun, AStableBoxIsThatOfAllFramesAndLosesNothing) {
     // Two corners of density 0 are all that it adds.
     EXPECT_EQ(same.grids.at(0).activeVoxels, alone.activeVoxels + 2u) << n;
     EXPECT_EQ(held[n].ledger->stored, free[n].ledger->stored) << n;
+    const GridDifference between = differenceOfFiles(free[n].file, held[n].file);
+    EXPECT_EQ(between.largest, 0.0) << n;
+    EXPECT_EQ(between.largestDepth, 0.0) << n;
+    EXPECT_EQ(between.largestVelocity, 0.0) << n;
+    EXPECT_EQ(between.voxelsOnlyA + between.voxelsOnlyB, 0u) << n;
     empty += int(alone.activeVoxels == 0);
     if (alone.activeVoxels == 0) continue;
     moved += int(alone.boxMin != first.boxMin);
@@ -163,6 +170,27 @@ TEST(ParticleRun, ADamagedBoxFileIsAsGoodAsNone) {
   EXPECT_EQ(hashesOf(bake(stable, again)), hashesOf(held));
 }
 
+TEST(ParticleRun, TheFilesBlockBakesToTheSameWithoutTheRecipesNames) {
+  const ScratchFolder folder;
+  const std::string head = "    voxel_size: 0.1\n    particles:\n";
+  const std::string recipe = folder.write("p.yaml", R"(
+fields:
+  rough: { fbm: { cell_size: 0.5 } }
+  deep: { multiply: [rough, { remap: { input: rough, to: [0.5, 1] } }] }
+assets:
+  puff:
+)" + head + R"(
+      emitters: [{ bursts: [[0, 20]], particle_radius: 0.4 }]
+      erosion: { amount: 1, field: deep }
+)");
+  const BakeRecord whole = bake(recipe, into(folder.file("out"))).at(0);
+  std::istringstream block(inspectFile(whole.file).metadata.at("particles"));
+  std::string again = "assets:\n  puff:\n" + head, line;
+  while (std::getline(block, line)) again += "      " + line + "\n";
+  const BakeRecord copy = bake(folder.write("q.yaml", again), into(folder.file("again"))).at(0);
+  EXPECT_EQ(copy.contentHash, whole.contentHash) << again;
+}
+
 TEST(ParticleRun, IsUpToDateUntilTheRecipeChanges) {
   const ScratchFolder folder;
   const std::string recipe = folder.write("p.yaml", kRecipe);
@@ -172,6 +200,11 @@ TEST(ParticleRun, IsUpToDateUntilTheRecipeChanges) {
   other.replace(other.find("drag: 1"), 7, "drag: 2");
   folder.write("p.yaml", other);
   for (const BakeRecord& record : bake(recipe, into(folder.file("out")))) EXPECT_FALSE(record.skipped);
+  // Points that are asked for later are written.
+  folder.write("p.yaml", other + "      write_points: [ply]\n");
+  bake(recipe, into(folder.file("out")));
+  EXPECT_EQ(readPoints(folder.file("out/puff_points_0012.ply")).size(),
+            bake(folder.file("p.yaml"), into(folder.file("new"))).back().ledger->countAlive);
 }
 
 PointSet somePoints() {

@@ -339,6 +339,11 @@ TEST(Splat, RefusesWhatCannotBeSplatted) {
   expectRefusal(one({0.0f, 0.0f, 0.0f}, 2000.0f, 1.0f), plain(), "2e+03 voxels, more than");
   expectRefusal(one({0.0f, 0.0f, 0.0f}, 1.0f, -1.0f), plain(), "has the mass -1");
   expectRefusal(one({1e6f, 1e6f, 1e6f}, 1.0f, 1.0f), plain(), "voxels");
+  SplatSettings boxed = plain();
+  boxed.voxelSize = 0.02;
+  boxed.box = Box{glm::dvec3(-1.0, -1e9, -1.0), glm::dvec3(1.0, 1.0, 1.0)};
+  expectRefusal(one({0.0f, 0.0f, 0.0f}, 1.0f, 1.0f), boxed,
+                "the frames' box reaches from -1e+09 to 1 along y, beyond voxel 2^30");
   SplatSettings half = plain();
   half.half = true;
   expectRefusal(one({0.0f, 0.0f, 0.0f}, 1.5f, 1e6f), half, "more than half precision holds");

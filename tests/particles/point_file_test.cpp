@@ -63,6 +63,9 @@ TEST(PointFile, RefusesWithTheLine) {
   expectRefusal("x,y,z,radius\n1,2,3,0\n", "p.csv:2: error: point 0 has the radius 0");
   expectRefusal("x,y,z,life\n1,2,3,-1\n", "p.csv:2: error: point 0 has the life -1");
   expectRefusal("x,y,z,vx\n1,2,3,0\n", "p.csv:1: error: has no column 'vy'");
+  expectRefusal("x,x,y,z\n1,2,3,4\n", "p.csv:1: error: names the column 'x' twice");
+  expectRefusal("x,y,z,name,name,life,life\n1,2,3,a,b,1,1\n",
+                "p.csv:1: error: names the column 'life' twice");
   expectRefusal("x,y,z\n1,2,3\n\n1,2,3\n", "p.csv:3: error: is an empty line");
   const ScratchFolder folder;
   writePointPly(folder.file("a.ply"), some());
