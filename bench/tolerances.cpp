@@ -1,6 +1,6 @@
 // Every recipe of a folder at tolerances of 10, 3 and 1%: what was chosen, the error along rays that the
-// choice did not see, and the bytes against the recipe's own voxel size, as a table in Markdown. Ends with 1
-// where a tolerance does not hold. Depends on choice, trial.
+// choice did not see, and the bytes against the recipe's own voxel size, as a table in Markdown. Ends with
+// exit code 3 where a tolerance does not hold. Depends on choice, trial.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -72,8 +72,8 @@ std::string drawFit(const std::string& folder, const FitResult& result) {
 
 void report(const FitResult& result) {
   char text[128];
-  std::snprintf(text, sizeof text, "a %.3f, b %.3f, c %.3f after %zu tries", result.factors[0],
-                result.factors[1], result.factors[2], result.evaluations);
+  std::snprintf(text, sizeof text, "%d octaves: a %.3f, b %.3f, c %.3f", result.count, result.factors[0],
+                result.factors[1], result.factors[2]);
   std::cout << text << '\n';
   for (const bool fitted : {true, false})
     std::cout << (fitted ? "views fitted to: " : "views held back: ")
@@ -99,8 +99,8 @@ int fitCommand(const FitCommandOptions& options) {
   scene.stage.on = false;
   FitOptions fitting;
   fitting.quiet = options.quiet;
-  if (scene.octaves.count.value_or(0) > 0) fitting.count = *scene.octaves.count;
-  if (options.count) fitting.count = *options.count;
+  fitting.count = options.count;
+  if (!fitting.count && scene.octaves.count.value_or(0) > 0) fitting.count = *scene.octaves.count;
   const double aspect = static_cast<double>(fitting.width) / fitting.height;
   std::vector<Opened> opened;  // owns what the subjects point at
   std::vector<FitSubject> subjects, checks;
@@ -120,8 +120,15 @@ int fitCommand(const FitCommandOptions& options) {
     const std::string unable = drawFit(options.out, result);
     if (!unable.empty()) std::cerr << unable << '\n';
   }
+  const bool worse = worsensHeldBack(result.views);
+  if (worse)
+    std::cerr << "fit: views held back are farther from the reference with these factors than with 0.5\n";
   if (options.dryRun) return kExitDone;
-  std::map<std::string, double> numbers{{"octaves_count", fitting.count}};
+  if (worse && !options.evenIfWorse) {
+    std::cerr << "fit: nothing is stored; --even-if-worse stores them nevertheless\n";
+    return kExitNo;
+  }
+  std::map<std::string, double> numbers{{kFittedCount, result.count}};
   for (size_t i = 0; i < result.factors.size(); ++i) numbers[kFittedFactors[i]] = result.factors[i];
   for (const std::string& file : options.files) addMetadata(file, numbers);
   return kExitDone;

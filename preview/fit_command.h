@@ -12,8 +12,9 @@ struct FitCommandOptions {
   std::vector<std::string> files;   // that are fitted to, by one set of factors, and get it
   std::vector<std::string> checks;  // that are measured alone
   std::string scene, grid, out;     // out: a folder for fit.csv, .svg, .png; empty: none
-  std::optional<int> count;         // octaves; none: the scene's where it asks for some, else 6
+  std::optional<int> count;         // octaves; none: the scene's, else as few as do
   bool dryRun = false;              // write no metadata
+  bool evenIfWorse = false;         // write it also where views held back get worse
   bool quiet = false;
 };
 

@@ -135,9 +135,13 @@ void addFitOptions(CLI::App& app, Arguments& a) {
   app.add_option("--scene", a.fit.scene, "A scene: its medium, camera and number of octaves are taken");
   app.add_option("--grid", a.fit.grid, "The grid (default: density, else the first float fog grid)");
   app.add_option("--out", a.fit.out, "A folder for fit.csv, fit.svg and fit.png");
-  app.add_option("--octaves", a.fit.count, "Octaves beyond the first (default: the scene's, else 6)")
+  app.add_option(
+         "--octaves", a.fit.count,
+         "Octaves beyond the first (default: the scene's, else the fewest that do nearly as well as 16)")
       ->check(CLI::Range(1, 16));
   app.add_flag("--dry-run", a.fit.dryRun, "Leave the files as they are");
+  app.add_flag("--even-if-worse", a.fit.evenIfWorse,
+               "Store factors that leave views held back worse than 0.5 does (else: exit code 3)");
 }
 
 int renderOrShow(Arguments& a, bool renderGiven, bool stepGiven, bool exposureGiven) {

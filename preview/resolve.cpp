@@ -183,6 +183,18 @@ void turnLights(Scene& scene, const dvec3& up) {
   scene.lightsFollowUp = false;
 }
 
+std::optional<int> fittedCount(const BrickVolume& bricks) {
+  const auto found = bricks.metadata.find(kFittedCount);
+  if (found == bricks.metadata.end()) return std::nullopt;
+  const std::vector<double> numbers = numbersIn(found->second);
+  if (numbers.size() != 1 || !(numbers[0] >= 0.0 && numbers[0] <= kMostOctaveCount) ||
+      numbers[0] != std::floor(numbers[0]))
+    throw InputError({bricks.path}, std::string("the metadata '") + kFittedCount +
+                                        "' should be a whole number from 0 to " +
+                                        std::to_string(kMostOctaveCount));
+  return static_cast<int>(numbers[0]);
+}
+
 bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks) {
   if (octaves.factorsGiven || !bricks.metadata.contains(kFittedFactors[0])) return false;
   double* const factors[] = {&octaves.a, &octaves.b, &octaves.c};
@@ -195,6 +207,7 @@ bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks) {
                                           "' should be a number from 0 to 1");
     *factors[i] = numbers[0];
   }
+  if (const std::optional<int> fitted = fittedCount(bricks); fitted && !octaves.count) octaves.count = fitted;
   return true;
 }
 
@@ -208,6 +221,10 @@ ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double a
     std::ostringstream fitted;
     fitted << "\noctaves: as fitted to the file: a " << view.scene.octaves.a << ", b " << view.scene.octaves.b
            << ", c " << view.scene.octaves.c;
+    const std::optional<int> count = fittedCount(bricks);
+    if (count && count != view.scene.octaves.count)
+      fitted << " (fitted for " << *count << " orders beyond the first, the scene asks for "
+             << *view.scene.octaves.count << ')';
     mediumSentence += fitted.str();
   }
   if (scene.environment.kind == Environment::Kind::exr)

@@ -2,6 +2,7 @@
 // volume/bricks.h and preview/stage_places.h.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "preview/viewed_scene.h"
@@ -47,8 +48,16 @@ void turnLights(Scene& scene, const glm::dvec3& up);
 /// Names of the factors of octaves that `nephele-preview fit` leaves in a file's metadata: a, b, c.
 inline constexpr const char* kFittedFactors[] = {"octaves_a", "octaves_b", "octaves_c"};
 
-/// Octaves whose factors the scene leaves open take those that were fitted to the file, where it holds them.
-/// Returns whether it does. Throws InputError where they are no factors in [0, 1].
+/// Name of how many orders beyond the first they were fitted for.
+inline constexpr const char* kFittedCount = "octaves_count";
+
+/// The number under that name; none where the file has none. Throws InputError where it is none that a scene
+/// may ask for.
+std::optional<int> fittedCount(const BrickVolume& bricks);
+
+/// Octaves whose factors (and, with them, whose number) the scene leaves open take those that were fitted to
+/// the file, where it holds them. Returns whether it does. Throws InputError where they are no factors in [0,
+/// 1].
 bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks);
 
 /// Camera and medium of a scene, given or chosen; the file's up; the environment's picture, read. A camera

@@ -21,8 +21,7 @@ constexpr Range kOpenHalfTurn{0.0, 180.0, true, true};
 constexpr Range kAsymmetry{-1.0, 1.0, true, true};
 // Below, a ray takes more than a hundred steps a voxel; above, it leaps over whole bricks.
 constexpr Range kStepVoxels{0.01, 100.0};
-constexpr double kMostOctaves = 16.0;
-constexpr Range kOctaveCount{0.0, kMostOctaves};
+constexpr Range kOctaveCount{0.0, kMostOctaveCount};
 constexpr Range kLobe{0.0, 1.0, false, true};
 constexpr Range kPowderStrength{0.0,
                                 100.0};  // beyond it, a hundredth of the densest voxel's density is dense

@@ -62,8 +62,10 @@ struct Powder {
 /// the active box at the mean active density (cheap; wrong inside uneven clouds).
 enum class LightTransmittance { marched, chord };
 
-/// Orders of scattering beyond the first: order m uses a^m σ_t towards the light, b^m σ_s, c^m g. Factors in
-/// [0, 1]. Look: none in `physical`, kReportOctaves in `report`.
+inline constexpr int kMostOctaveCount = 16;
+
+/// Orders of scattering beyond the first, kMostOctaveCount at most: order m uses a^m σ_t towards the light,
+/// b^m σ_s, c^m g. Factors in [0, 1]. Look: none in `physical`, kReportOctaves in `report`.
 struct Octaves {
   std::optional<int> count;  // nullopt (`auto` in files): as the look decides
   double a = 0.5, b = 0.5, c = 0.5;

@@ -69,12 +69,13 @@ void Desk::adopt(bool otherFile) {
     if (!scene.octaves.factorsGiven) {  // they may be another file's
       const std::optional<int> count = scene.octaves.count;
       scene.octaves = firstScene_.octaves;
-      scene.octaves.count = count;
+      scene.octaves.count = count == fittedCount_ ? std::nullopt : count;
     }
     std::string sentence;
     const ViewedScene view = resolveScene(scene, volume, aspect(), sentence);
     say(sentence);
     std::cerr << describeLight(view) << '\n';
+    fittedCount_ = scene.octaves.count ? std::nullopt : view.scene.octaves.count;
     state_.settings.scene = view.scene;
     state_.settings.medium = view.medium;
     state_.settings.environmentMap = view.environmentMap;

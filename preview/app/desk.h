@@ -98,7 +98,8 @@ class Desk {
 
   const AppOptions& options_;
   Window& window_;
-  Scene firstScene_;  // as the command line gave it, for files opened later
+  Scene firstScene_;                // as the command line gave it, for files opened later
+  std::optional<int> fittedCount_;  // of octaves, where the scene left it open and the file gave it
   Document document_;
   BrickFacts brickFacts_;  // of the file's volume
   Viewer viewer_;

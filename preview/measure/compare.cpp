@@ -30,19 +30,6 @@ const std::vector<float>& planeOf(const Picture& picture, const std::string& pic
   return plane;
 }
 
-/// Indices of the pixels to compare.
-std::vector<size_t> seenPixels(const Picture& a, const Picture& b) {
-  const int alphaA = a.find("A"), alphaB = b.find("A");
-  const size_t count = static_cast<size_t>(a.width) * static_cast<size_t>(a.height);
-  std::vector<size_t> seen;
-  for (size_t i = 0; i < count; ++i) {
-    const bool inA = alphaA < 0 || a.planes[static_cast<size_t>(alphaA)][i] > kSeenAlpha;
-    const bool inB = alphaB < 0 || b.planes[static_cast<size_t>(alphaB)][i] > kSeenAlpha;
-    if (inA || inB) seen.push_back(i);
-  }
-  return seen;
-}
-
 double ratio(double numerator, double denominator) {
   if (numerator == 0.0) return 0.0;
   return denominator != 0.0 ? numerator / denominator
@@ -96,6 +83,18 @@ Comparison plainComparison(const Picture& picture, const std::string& pictureNam
 }
 
 }  // namespace
+
+std::vector<size_t> seenPixels(const Picture& a, const Picture& b) {
+  const int alphaA = a.find("A"), alphaB = b.find("A");
+  const size_t count = static_cast<size_t>(a.width) * static_cast<size_t>(a.height);
+  std::vector<size_t> seen;
+  for (size_t i = 0; i < count; ++i) {
+    const bool inA = alphaA < 0 || a.planes[static_cast<size_t>(alphaA)][i] > kSeenAlpha;
+    const bool inB = alphaB < 0 || b.planes[static_cast<size_t>(alphaB)][i] > kSeenAlpha;
+    if (inA || inB) seen.push_back(i);
+  }
+  return seen;
+}
 
 bool hasHalves(const Picture& picture) {
   return picture.find("half1.R") >= 0 && picture.find("half2.B") >= 0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/picture.h"
 #include "base/tolerance.h"
@@ -12,6 +13,10 @@ namespace nephele {
 
 /// Whether a picture holds the planes half1.R … half2.B: two independent estimates of R, G and B.
 bool hasHalves(const Picture& picture);
+
+/// Indices of the pixels that are compared: where either alpha exceeds 1e-3, all where a picture has no
+/// alpha.
+std::vector<size_t> seenPixels(const Picture& a, const Picture& b);
 
 /// Errors of a picture x against a reference r over the pixels where either alpha exceeds 1e-3 (all pixels
 /// where a picture has no alpha), of R, G and B. Relative figures are infinite where r is black and x is not,

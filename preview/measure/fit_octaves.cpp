@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "preview/measure/least_point.h"
 
 namespace nephele {
 namespace {
@@ -42,7 +43,7 @@ dvec3 directionAt(const ViewedScene& view, double azimuth, double elevation) {
   return std::cos(elevation * kDegree) * flat + std::sin(elevation * kDegree) * up;
 }
 
-ViewedScene viewAt(const ViewedScene& given, const Station& station, int count) {
+ViewedScene viewAt(const ViewedScene& given, const Station& station) {
   ViewedScene view = given;
   const double distance = glm::length(given.camera.position - given.camera.target);
   view.camera.position =
@@ -55,12 +56,13 @@ ViewedScene viewAt(const ViewedScene& given, const Station& station, int count) 
   scene.look = Look::physical;
   scene.powder.on = false;
   scene.lightTransmittance = LightTransmittance::marched;
-  scene.octaves.count = count;
   scene.march.lightCache = false;  // each view has another sun
+  scene.march.levelPixels = 0.0;   // the small pictures stand for large ones, which resolve every voxel
   return view;
 }
 
-void setFactors(ViewedScene& view, const OctaveFactors& factors) {
+void setFactors(ViewedScene& view, const OctaveFactors& factors, int count) {
+  view.scene.octaves.count = count;
   view.scene.octaves.a = factors[0];
   view.scene.octaves.b = factors[1];
   view.scene.octaves.c = factors[2];
@@ -80,7 +82,7 @@ class Fit {
         FitView view{s,
                      subjects_[s].name,
                      station.fitted && s < checksFrom,
-                     viewAt(subjects_[s].view, station, options_.count),
+                     viewAt(subjects_[s].view, station),
                      {},
                      {},
                      {}};
@@ -101,20 +103,23 @@ class Fit {
     }
   }
 
-  NoisyError errorOf(FitView& view, const OctaveFactors& factors) {
-    if (loaded_ != view.subject) march_.setVolume(*subjects_[view.subject].bricks);
-    loaded_ = view.subject;
-    setFactors(view.view, factors);
+  NoisyError errorOf(FitView& view, const OctaveFactors& factors, int count) {
+    take(view.subject);
+    setFactors(view.view, factors, count);
     PictureCost cost;
     return compareWithHalves(march_.render(view.view, requestOf(), cost), view.truth);
   }
 
-  double cost(const OctaveFactors& factors) {
-    double sum = 0.0;
-    for (FitView& view : views) {
-      if (!view.fitted) continue;
-      const double error = errorOf(view, factors).relativeRmse;
-      sum += error * error;
+  /// The squared errors of all views that are fitted to, for any factors.
+  OctaveForm form() {
+    Progress progress("orders", views.size(), options_.quiet);
+    OctaveForm sum;
+    for (const FitView& view : views) {
+      if (view.fitted) {
+        take(view.subject);
+        sum.add(OctaveForm::of(march_, view.view, requestOf(), view.truth));
+      }
+      progress.advance();
     }
     return sum;
   }
@@ -130,6 +135,10 @@ class Fit {
     request.quiet = true;
     return request;
   }
+  void take(size_t subject) {
+    if (loaded_ != subject) march_.setVolume(*subjects_[subject].bricks);
+    loaded_ = subject;
+  }
   static bool isDark(const Picture& picture) {
     return std::all_of(picture.planes[0].begin(), picture.planes[0].end(),
                        [](float value) { return value <= 0.0f; });
@@ -140,6 +149,34 @@ class Fit {
   const FitOptions& options_;
   size_t loaded_ = std::numeric_limits<size_t>::max();
 };
+
+struct FittedFactors {
+  OctaveFactors factors;
+  int count;
+  double error;  // root mean square over the views, times the root of how many they are
+};
+
+FittedFactors fittedTo(const OctaveForm& form, int count) {
+  constexpr int kSide = 11;
+  constexpr double kTolerance = 1e-4;
+  constexpr size_t kMost = 400;
+  const auto cost = [&](const OctaveFactors& factors) { return form.at(factors, count); };
+  const OctaveFactors factors = leastOfCube(cost, kSide, kTolerance, kMost);
+  return {factors, count, std::sqrt(std::max(cost(factors), 0.0))};
+}
+
+/// The fewest octaves whose error is within a share of the least.
+FittedFactors fewestFittedTo(const OctaveForm& form) {
+  constexpr double kNearly = 1.03;
+  std::vector<FittedFactors> all;
+  double least = std::numeric_limits<double>::infinity();
+  for (int count = 1; count <= kMostOctaveCount; ++count) {
+    all.push_back(fittedTo(form, count));
+    least = std::min(least, all.back().error);
+  }
+  return *std::find_if(all.begin(), all.end(),
+                       [&](const FittedFactors& f) { return f.error <= kNearly * least; });
+}
 
 }  // namespace
 
@@ -154,65 +191,8 @@ double errorOver(const std::vector<FitView>& views, bool fitted, bool after) {
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
-OctaveFactors leastOf(const std::function<double(const OctaveFactors&)>& cost, const OctaveFactors& start,
-                      double tolerance, size_t most) {
-  struct Corner {
-    OctaveFactors at;
-    double cost;
-  };
-  size_t spent = 0;
-  const auto corner = [&](OctaveFactors at) {
-    for (double& factor : at) factor = std::clamp(factor, 0.0, 1.0);  // the nearest point of the cube
-    ++spent;
-    return Corner{at, cost(at)};
-  };
-  constexpr double kFirstEdge = 0.2;
-  std::vector<Corner> simplex{corner(start)};
-  for (size_t axis = 0; axis < start.size(); ++axis) {
-    OctaveFactors at = start;
-    at[axis] += at[axis] > 0.5 ? -kFirstEdge : kFirstEdge;
-    simplex.push_back(corner(at));
-  }
-  const auto byCost = [](const Corner& a, const Corner& b) { return a.cost < b.cost; };
-  const auto spread = [&] {
-    double widest = 0.0;
-    for (size_t axis = 0; axis < start.size(); ++axis)
-      for (const Corner& c : simplex) widest = std::max(widest, std::abs(c.at[axis] - simplex[0].at[axis]));
-    return widest;
-  };
-  for (std::sort(simplex.begin(), simplex.end(), byCost); spent < most && spread() > tolerance;
-       std::sort(simplex.begin(), simplex.end(), byCost)) {
-    Corner& worst = simplex.back();
-    OctaveFactors middle{};
-    for (size_t i = 0; i + 1 < simplex.size(); ++i)
-      for (size_t axis = 0; axis < middle.size(); ++axis) middle[axis] += simplex[i].at[axis] / 3.0;
-    // From the worst corner through the middle of the others: 1 is its mirror image, −½ half-way back.
-    const auto through = [&](double times) {
-      OctaveFactors at{};
-      for (size_t axis = 0; axis < at.size(); ++axis)
-        at[axis] = middle[axis] + times * (middle[axis] - worst.at[axis]);
-      return corner(at);
-    };
-    const Corner mirrored = through(1.0);
-    if (mirrored.cost < simplex[0].cost) {
-      const Corner farther = through(2.0);
-      worst = farther.cost < mirrored.cost ? farther : mirrored;
-    } else if (mirrored.cost < simplex[simplex.size() - 2].cost) {
-      worst = mirrored;
-    } else {
-      const Corner nearer = through(mirrored.cost < worst.cost ? 0.5 : -0.5);
-      if (nearer.cost < std::min(worst.cost, mirrored.cost)) {
-        worst = nearer;
-        continue;
-      }
-      for (size_t i = 1; i < simplex.size(); ++i) {
-        for (size_t axis = 0; axis < start.size(); ++axis)
-          simplex[i].at[axis] = 0.5 * (simplex[i].at[axis] + simplex[0].at[axis]);
-        simplex[i] = corner(simplex[i].at);
-      }
-    }
-  }
-  return simplex[0].at;
+bool worsensHeldBack(const std::vector<FitView>& views) {
+  return errorOver(views, false, true) > errorOver(views, false, false);
 }
 
 FitResult fitOctaves(Method& march, Method& truth, const std::vector<FitSubject>& subjects,
@@ -221,21 +201,14 @@ FitResult fitOctaves(Method& march, Method& truth, const std::vector<FitSubject>
   all.insert(all.end(), checks.begin(), checks.end());
   Fit fit(march, truth, std::move(all), options);
   fit.addViews(subjects.size());
-  constexpr double kTolerance = 0.005;
-  constexpr size_t kMost = 80;
+  const OctaveForm form = fit.form();
   FitResult result;
-  {
-    Progress progress("fitting", kMost, options.quiet);
-    const auto cost = [&](const OctaveFactors& factors) {
-      progress.advance();
-      ++result.evaluations;
-      return fit.cost(factors);
-    };
-    result.factors = leastOf(cost, kUnfittedFactors, kTolerance, kMost);
-  }
+  const FittedFactors fitted = options.count ? fittedTo(form, *options.count) : fewestFittedTo(form);
+  result.factors = fitted.factors;
+  result.count = fitted.count;
   for (FitView& view : fit.views) {
-    view.before = fit.errorOf(view, kUnfittedFactors);
-    view.after = fit.errorOf(view, result.factors);
+    view.before = fit.errorOf(view, kUnfittedFactors, result.count);
+    view.after = fit.errorOf(view, result.factors, result.count);
   }
   result.views = std::move(fit.views);
   return result;

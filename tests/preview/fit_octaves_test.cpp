@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "preview/measure/least_point.h"
 #include "preview/resolve.h"
 #include "preview/truth/random.h"
 
@@ -27,6 +28,19 @@ TEST(FitOctaves, FindsTheLeastPointOfAKnownFunction) {
     const OctaveFactors found = leastOf(cost, kUnfittedFactors, 1e-4, 400);
     for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], least[i], 0.02) << i;
   }
+}
+
+TEST(FitOctaves, ALatticeFindsTheDeeperOfTwoValleys) {
+  const auto cost = [](const UnitPoint& at) {
+    const auto valley = [&](double place, double depth) {
+      double squares = 0.0;
+      for (const double x : at) squares += (x - place) * (x - place);
+      return -depth * std::exp(-20.0 * squares);
+    };
+    return valley(0.4, 1.0) + valley(0.9, 1.5);
+  };
+  EXPECT_NEAR(leastOf(cost, kUnfittedFactors, 1e-4, 400)[0], 0.4, 0.02);
+  for (const double found : leastOfCube(cost, 6, 1e-4, 400)) EXPECT_NEAR(found, 0.9, 0.02);
 }
 
 TEST(FitOctaves, StopsAfterTheMostTries) {
@@ -80,11 +94,46 @@ class KnownOctaves : public Method {
   bool isTruth_;
 };
 
+TEST(FitOctaves, ASquareOfErrorsIsThatOfThePictureItself) {
+  KnownOctaves march(false), truth(true);
+  PictureRequest request;
+  request.width = request.height = 24;
+  const ViewedScene view;
+  PictureCost cost;
+  const Picture reference = truth.render(view, request, cost);
+  constexpr double kApart = 4e-3;  // twice what interpolation adds to radiance, 0.2%
+  OctaveForm form = OctaveForm::of(march, view, request, reference);
+  for (const int count : {1, 6, 16})
+    for (const OctaveFactors factors : {kUnfittedFactors, OctaveFactors{0.7, 0.35, 0.9},
+                                        OctaveFactors{0.0, 1.0, 0.0}, OctaveFactors{1.0, 0.2, 1.0}}) {
+      ViewedScene drawn;
+      drawn.scene.octaves = {count, factors[0], factors[1], factors[2], true};
+      const double error = compareWithHalves(march.render(drawn, request, cost), reference).relativeRmse;
+      EXPECT_NEAR(form.at(factors, count), error * error, kApart * error + 1e-5)
+          << count << ' ' << factors[0];
+    }
+  const double one = form.at(kUnfittedFactors, 6);
+  form.add(form);
+  EXPECT_NEAR(form.at(kUnfittedFactors, 6), 2.0 * one, 1e-9 * one);
+}
+
+TEST(FitOctaves, WithoutACountTakesTheFewestThatDoNearlyAsWell) {
+  KnownOctaves march(false), truth(true);
+  const BrickVolume bricks;
+  FitOptions options;
+  options.quiet = true;
+  const FitResult free = fitOctaves(march, truth, {{"known", &bricks, ViewedScene{}}}, {}, options);
+  EXPECT_GE(free.count, 2);
+  EXPECT_LE(free.count, *kTrue.count);
+  EXPECT_LT(errorOver(free.views, false, true), 0.02);
+}
+
 TEST(FitOctaves, RecoversKnownFactorsThroughNoiseAndHalvesTheErrorOfTheUnfitted) {
   KnownOctaves march(false), truth(true);
   const BrickVolume bricks;
   FitOptions options;
   options.quiet = true;
+  options.count = kTrue.count;
   const FitResult result = fitOctaves(march, truth, {{"known", &bricks, ViewedScene{}}}, {}, options);
   EXPECT_NEAR(result.factors[0], kTrue.a, 0.05);
   EXPECT_NEAR(result.factors[1], kTrue.b, 0.05);
@@ -96,6 +145,19 @@ TEST(FitOctaves, RecoversKnownFactorsThroughNoiseAndHalvesTheErrorOfTheUnfitted)
     EXPECT_LT(errorOver(result.views, fitted, true), 0.5 * errorOver(result.views, fitted, false));
 }
 
+TEST(FitOctaves, SaysWhereViewsHeldBackGetWorse) {
+  std::vector<FitView> views(2);
+  views[1].fitted = false;
+  views[0].before.relativeRmse = 0.6;  // views fitted to do not count
+  views[0].after.relativeRmse = 0.1;
+  views[1].before.relativeRmse = 0.5;
+  views[1].after.relativeRmse = 0.7;
+  EXPECT_TRUE(worsensHeldBack(views));
+  views[1].after.relativeRmse = 0.4;
+  views[0].after.relativeRmse = 0.9;
+  EXPECT_FALSE(worsensHeldBack(views));
+}
+
 TEST(FitOctaves, ASceneTakesTheFilesFactorsWhereItGivesNone) {
   BrickVolume bricks;
   Octaves octaves;
@@ -105,9 +167,22 @@ TEST(FitOctaves, ASceneTakesTheFilesFactorsWhereItGivesNone) {
   EXPECT_EQ(octaves.a, 0.25);
   EXPECT_EQ(octaves.b, 0.75);
   EXPECT_EQ(octaves.c, 1.0);
+  EXPECT_FALSE(octaves.count);
   Octaves given{3, 0.1, 0.2, 0.3, true};
   EXPECT_FALSE(takeFittedFactors(given, bricks));
   EXPECT_EQ(given.a, 0.1);
+  bricks.metadata["octaves_count"] = "9";
+  EXPECT_TRUE(takeFittedFactors(octaves, bricks));
+  EXPECT_EQ(octaves.count, 9);
+  Octaves counted{3, 0.5, 0.5, 0.5, false};
+  EXPECT_TRUE(takeFittedFactors(counted, bricks));
+  EXPECT_EQ(counted.count, 3);
+  for (const char* wrong : {"17", "2.5", "-1", "many"}) {
+    bricks.metadata["octaves_count"] = wrong;
+    Octaves open;
+    EXPECT_THROW(takeFittedFactors(open, bricks), InputError) << wrong;
+  }
+  bricks.metadata.erase("octaves_count");
   bricks.metadata["octaves_b"] = "1.5";
   EXPECT_THROW(takeFittedFactors(octaves, bricks), InputError);
 }
