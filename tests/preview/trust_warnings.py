@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The default cumulus lies inside the stability map, in its own scene and in the one without; long steps do not.
 
-usage: warnings.py BAKE PREVIEW PIPELINE     exit 1 where a warning is missing or wrong
+usage: trust_warnings.py BAKE PREVIEW PIPELINE     exit 1 where a warning is missing or wrong
 Depends on Python's standard library alone.
 """
 import subprocess
