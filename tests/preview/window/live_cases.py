@@ -9,11 +9,13 @@ import json
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 from window import Window, under_xvfb
 
 PREVIEW, BAKE, MAKE_BALL = sys.argv[1:4]
+LATER = 2.0  # seconds, after which particles have gone far and warnings stand over the picture
 RECIPE = """\
 up_axis: z
 seed: 4
@@ -49,6 +51,7 @@ def particles_live(folder):
         with_panel = w.picture()
         w.key("h")  # pictures without the panel
         w.until_unlike(with_panel, "H does not hide the panel", bottom=0.12)
+        time.sleep(LATER)
         baked = w.picture()
         w.key("p")
         w.until_said("particles are moved live")
@@ -56,6 +59,7 @@ def particles_live(folder):
         # At time 0 a ball stands where a plume rises later: playing changes the picture, and goes on to.
         early = w.picture()
         w.until_unlike(early, "the particles do not move")
+        time.sleep(LATER)  # a system begun anew, played and paused must not look alike
         w.key("space")
         w.until_said("live particles pause")
         paused = w.settled()
