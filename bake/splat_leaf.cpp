@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 
 #include "bake/splat_places.h"
 #include "bake/voxelize_kernels.h"
+#include "base/figures.h"
 
 namespace nephele {
 namespace {
@@ -21,11 +21,7 @@ using openvdb::Coord;
 constexpr float kHalfLargest = 65504.0f;
 constexpr int kWordBits = 64;
 
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string shown(double value) { return number(value, 3); }
 
 std::unique_ptr<Leaf> leafOf(const Coord& origin, const Leaf::NodeMaskType& mask, const float* values) {
   auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, 0.0f);

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "base/figures.h"
 
 namespace nephele {
 namespace {
@@ -26,11 +27,7 @@ glm::ivec3 tileOf(const glm::ivec3& voxel) {
   return {voxel.x >> kShift, voxel.y >> kShift, voxel.z >> kShift};
 }
 
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string shown(double value) { return number(value, 3); }
 
 size_t chunksOf(size_t particles, size_t tiles) {
   const size_t byMemory = std::max<size_t>(1, kMostCounts / std::max<size_t>(1, tiles));

@@ -7,7 +7,6 @@ Depends on programs.py; the part inside Blender is blender_sequence.py.
 import json
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -41,10 +40,7 @@ def main():
         expected = Path(folder) / "expected.json"
         expected.write_text(json.dumps([programs.info(file, folder) for file in files]))
         script = Path(__file__).with_name("blender_sequence.py")
-        # The system's Python alone: another one's variables would keep Blender from starting.
-        blender = ["env", "-u", "PYTHONHOME", "-u", "PYTHONPATH", "blender", "-b", "--factory-startup", "-noaudio",
-                   "--python-exit-code", "1", "--python", str(script), "--", folder, str(expected)]
-        return subprocess.run(blender, stdin=subprocess.DEVNULL, timeout=LIMIT_SECONDS).returncode
+        return programs.run_in_blender(script, [folder, str(expected)], LIMIT_SECONDS)
 
 
 if __name__ == "__main__":

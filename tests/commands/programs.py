@@ -67,3 +67,11 @@ def info(file, folder):
     """What `nephele-bake info --json` says of one file."""
     said = json.loads(run_well([BAKE, "info", file, "--json"], folder).stdout)
     return said[0] if isinstance(said, list) else said.get("files", [said])[0]
+
+
+def run_in_blender(script, arguments, seconds):
+    """The exit code of a script that Blender runs, with what it finds behind `--`."""
+    # The system's Python alone: another one's variables would keep Blender from starting.
+    blender = ["env", "-u", "PYTHONHOME", "-u", "PYTHONPATH", "blender", "-b", "--factory-startup", "-noaudio",
+               "--python-exit-code", "1", "--python", str(script), "--", *arguments]
+    return subprocess.run(blender, stdin=subprocess.DEVNULL, timeout=seconds).returncode
