@@ -5,7 +5,7 @@ by at most 2% of single scattering under the sample's suns. With --times a loose
     samples_against_truth.py BAKE PREVIEW [--only NAME,NAME] [--errors 10%,3%,1%] [--size 240x135] [--no-defaults] [--times]
                              [--rows FILE]
 
-Prints a line a check; exits with 1 where one fails. --rows adds the rows of docs/accuracy.md's table to FILE. Needs
+Prints a line a check; exits with 1 where one fails. --rows adds them to FILE as rows of a Markdown table. Needs
 /usr/bin/python3 alone.
 """
 import argparse
