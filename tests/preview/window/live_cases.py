@@ -62,11 +62,11 @@ def particles_live(folder):
         time.sleep(LATER)  # a system begun anew, played and paused must not look alike
         w.key("space")
         w.until_said("live particles pause")
-        paused = w.settled()
+        paused = w.at_rest()
         w.key("shift+p", "space", "space")
         w.until_said("live particles pause", times=2)
         w.until_unlike(paused, "reset does not begin anew")
-        begun = w.settled()
+        begun = w.at_rest()  # until_unlike() may have waited for its last picture already
         w.key("Right", "Right", "Right", "Right", "Right", "Right")
         w.until_unlike(begun, "stepping on does not move them")
         w.key("b")

@@ -123,18 +123,22 @@ class Window:
 
     def settled(self):
         """The picture after something that began it anew: once its noise is known, and nothing begins another."""
+        return self.at_rest(self.seen + 1)
+
+    def at_rest(self, least=1):
+        """The picture once nothing begins another: that of number `least`, or a later one. It may stand there already."""
         def begun():
             stats = self.stats()
             return stats["pictures_begun"] if stats and stats["samples"] > 0 else 0
 
         def calm():
             now, before = begun(), self.picture()
-            if now <= self.seen or before is None:
+            if now < least or before is None:
                 return False
             time.sleep(CALM)
             after = self.picture()
             return begun() == now and after is not None and after.like(before)
-        self.until(calm, "no new picture")
+        self.until(calm, "no new picture" if least > self.seen else "the picture does not come to rest")
         self.seen = begun()
         return self.picture()
 
