@@ -249,8 +249,6 @@ Scene openScene(const std::string& path, std::optional<double> stepVoxels) {
 BrickVolume openVolume(const std::string& path, const std::string& grid) {
   BrickVolume bricks = loadBricks(path, grid);
   for (const std::string& note : bricks.notes) std::cerr << path << ": " << note << '\n';
-  if (bricks.empty())
-    std::cerr << path << ": the grid '" << bricks.gridName << "' is empty: there is nothing to see\n";
   return bricks;
 }
 

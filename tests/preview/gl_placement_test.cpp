@@ -38,19 +38,8 @@ constexpr int kLeastSeen = kWidth * kHeight / 20;
 /// Largest difference of transmittance from the exact one over the picture. As many pixels see the medium as
 /// the exact integral says, but for those at the very limit; they are kLeastSeen or more.
 double worstError(const BrickVolume& bricks, const Camera& camera, double depthAcross) {
-  ViewedScene view;
-  view.camera = camera;
-  view.scene.lights.clear();
-  view.scene.march.stepVoxels = 0.1;
-  view.scene.march.adaptive = false;
-  view.medium = chooseMedium(Scene{}, bricks).medium;
-  const double sigmaT = view.medium.sigmaS[0] * depthAcross / 8.0;
-  view.medium.sigmaS = {sigmaT, sigmaT, sigmaT};
-  MarchPass pass(Filter::exact);
-  pass.setParameters(marchParameters(view, bricks, kWidth, kHeight, 0, false));
-  const Picture picture = marchOnGpu(pass, bricks, kWidth, kHeight, {0.5f, 0.5f}, 0).picture;
-  const std::vector<float>& transmittance =
-      picture.planes[static_cast<size_t>(picture.find("transmittance.G"))];
+  const double sigmaT = chooseMedium(Scene{}, bricks).medium.sigmaS[0] * depthAcross / 8.0;
+  const std::vector<float> transmittance = transmittanceOnGpu(bricks, camera, sigmaT, kWidth, kHeight);
   double worst = 0.0;
   int seen = 0, shown = 0, inDoubt = 0;
   for (int y = 0; y < kHeight; ++y)
