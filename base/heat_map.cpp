@@ -29,25 +29,74 @@ std::string colourOf(double value, const HeatMap& map) {
   return text;
 }
 
-void addMap(std::ostream& out, const HeatMap& map) {
+// Pixels: of a row, of a title with what stands beside it, of a character in names and in cells, of what
+// stays free beside them.
+constexpr int kRow = 34, kHead = 46, kNameCharacter = 8, kCellCharacter = 6, kFree = 10;
+
+struct Layout {
+  int left = 0, cell = 0, width = 0, height = 0;  // pixels; cells are equally wide in all maps
+};
+
+std::vector<std::string> linesOf(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+Layout layoutOf(const std::vector<HeatMap>& maps) {
+  size_t name = 0, label = 0, widest = 1;
+  Layout layout;
+  for (const HeatMap& map : maps) {
+    layout.height += kHead + kRow * static_cast<int>(map.rows.size());
+    for (const HeatRow& row : map.rows) {
+      name = std::max(name, row.name.size());
+      widest = std::max(widest, row.values.size());
+      for (const std::string& text : row.labels)
+        for (const std::string& line : linesOf(text)) label = std::max(label, line.size());
+    }
+  }
+  layout.left = kFree + kNameCharacter * static_cast<int>(name);
+  layout.cell = kFree + kCellCharacter * static_cast<int>(label);
+  layout.width = layout.left + layout.cell * static_cast<int>(widest) + kFree;
+  layout.height += kFree;
+  return layout;
+}
+
+/// The lines of a text one under another in the middle of a cell.
+void addLabel(std::ostream& out, const std::string& text, size_t column, size_t row, size_t& label) {
+  constexpr double kFirst = 0.1, kLast = 0.9;  // of the row's height
+  const std::vector<std::string> lines = linesOf(text);
+  const double line = (kLast - kFirst) / static_cast<double>(lines.size());
+  for (size_t n = 0; n < lines.size(); ++n)
+    out << "set label " << ++label << ' ' << gnuplotText(lines[n]) << " at "
+        << static_cast<double>(column) + 0.5 << ','
+        << static_cast<double>(row) + kFirst + line * (static_cast<double>(n) + 0.5)
+        << " center font ',8' noenhanced\n";
+}
+
+/// The map with its first row `top` pixels below the picture's upper edge.
+void addMap(std::ostream& out, const HeatMap& map, const Layout& layout, int top) {
   size_t widest = 1;
   for (const HeatRow& row : map.rows) widest = std::max(widest, row.values.size());
+  const auto acrossAt = [&](int pixels) { return static_cast<double>(pixels) / layout.width; };
+  const auto upAt = [&](int pixels) { return 1.0 - static_cast<double>(pixels) / layout.height; };
   out << "unset object\nunset label\nset title " << gnuplotText(map.title)
-      << " noenhanced\nset xrange [0:" << widest << "]\nset yrange [" << map.rows.size()
-      << ":0]\nset ytics (";
+      << " noenhanced\nset lmargin at screen " << acrossAt(layout.left) << "\nset rmargin at screen "
+      << acrossAt(layout.left + layout.cell * static_cast<int>(widest)) << "\nset tmargin at screen "
+      << upAt(top) << "\nset bmargin at screen " << upAt(top + kRow * static_cast<int>(map.rows.size()))
+      << "\nset xrange [0:" << widest << "]\nset yrange [" << map.rows.size() << ":0]\nset ytics (";
   for (size_t r = 0; r < map.rows.size(); ++r)
     out << (r > 0 ? ", " : "") << gnuplotText(map.rows[r].name) << ' ' << static_cast<double>(r) + 0.5;
   out << ") scale 0 noenhanced\n";
-  size_t object = 0;
+  size_t object = 0, label = 0;
   for (size_t r = 0; r < map.rows.size(); ++r) {
     const HeatRow& row = map.rows[r];
     NEPHELE_CHECK_EQ(row.values.size(), row.labels.size());
     for (size_t i = 0; i < row.values.size(); ++i) {
-      ++object;
-      out << "set object " << object << " rectangle from " << i << ',' << r << " to " << i + 1 << ',' << r + 1
-          << " fc rgb '" << colourOf(row.values[i], map) << "' fs solid border rgb '#ffffff'\nset label "
-          << object << ' ' << gnuplotText(row.labels[i]) << " at " << static_cast<double>(i) + 0.5 << ','
-          << static_cast<double>(r) + 0.5 << " center font ',8' noenhanced\n";
+      out << "set object " << ++object << " rectangle from " << i << ',' << r << " to " << i + 1 << ','
+          << r + 1 << " fc rgb '" << colourOf(row.values[i], map) << "' fs solid border rgb '#ffffff'\n";
+      addLabel(out, row.labels[i], i, r, label);
     }
   }
   out << "plot NaN notitle\n";
@@ -57,16 +106,16 @@ void addMap(std::ostream& out, const HeatMap& map) {
 
 std::string heatMapScript(const std::vector<HeatMap>& maps, const std::string& terminal,
                           const std::string& output) {
-  constexpr int kWidth = 860, kRow = 34, kHead = 90;  // pixels
-  size_t most = 1;
-  for (const HeatMap& map : maps) most = std::max(most, map.rows.size());
+  const Layout layout = layoutOf(maps);
   std::ostringstream out;
-  out << "set terminal " << terminal << " size " << kWidth * static_cast<int>(maps.size()) << ','
-      << kHead + kRow * static_cast<int>(most) << " background rgb 'white'\nset output "
-      << gnuplotText(output)
-      << "\nset encoding utf8\nunset key\nunset xtics\nset border 0\nset multiplot layout 1," << maps.size()
-      << '\n';
-  for (const HeatMap& map : maps) addMap(out, map);
+  out << "set terminal " << terminal << " size " << layout.width << ',' << layout.height
+      << " background rgb 'white'\nset output " << gnuplotText(output)
+      << "\nset encoding utf8\nunset key\nunset xtics\nset border 0\nset multiplot\n";
+  int top = 0;
+  for (const HeatMap& map : maps) {
+    addMap(out, map, layout, top + kHead);
+    top += kHead + kRow * static_cast<int>(map.rows.size());
+  }
   out << "unset multiplot\nset output\n";
   return out.str();
 }

@@ -8,7 +8,8 @@
 
 namespace nephele {
 
-/// One row of cells: its name at the left, `labels` in the cells. Rows may differ in length.
+/// One row of cells: its name at the left, `labels` in the cells, of one line or more. Rows may differ in
+/// length.
 struct HeatRow {
   std::string name;
   std::vector<double> values;       // not finite: a cell in grey
@@ -22,7 +23,7 @@ struct HeatMap {
   std::vector<HeatRow> rows;
 };
 
-/// The gnuplot script that draws maps side by side.
+/// The gnuplot script that draws maps one under another.
 std::string heatMapScript(const std::vector<HeatMap>& maps, const std::string& terminal,
                           const std::string& output);
 

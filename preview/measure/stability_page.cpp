@@ -1,14 +1,14 @@
 // Tables and heat maps of stability. Depends on what its header names.
 #include "preview/measure/stability_page.h"
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
 #include <sstream>
 
 #include "base/error.h"
 #include "base/figures.h"
 #include "base/files.h"
 #include "base/heat_map.h"
+#include "base/trust_map.h"
 #include "preview/measure/trust.h"
 
 namespace nephele {
@@ -20,69 +20,31 @@ std::string textOf(const StabilityCell& cell) {
   return cell.error ? shortPercent(cell.error->relativeRmse) : "finite";
 }
 
-bool isTrusted(const StabilityCell& cell) {
-  if (!cell.refused.empty() || cell.bad.any()) return false;
-  return !cell.error || cell.error->relativeRmse <= kTrustedError;
+TrustPlace placeOf(const StabilityCell& cell) {
+  TrustPlace place{cell.value, textOf(cell), {}, false, !cell.refused.empty() || cell.bad.any()};
+  if (cell.error) place.error = cell.error->relativeRmse;
+  place.trusted = !place.failed && place.error.value_or(0.0) <= kTrustedError;
+  return place;
 }
 
-/// Runs of cells of one way and one axis.
-std::vector<std::vector<const StabilityCell*>> axesOf(const StabilityResult& result, size_t way) {
-  std::vector<std::vector<const StabilityCell*>> axes;
+TrustMap mapOf(const StabilityResult& result, size_t way) {
+  TrustMap map;
+  map.title = result.ways[way].name;
   for (const StabilityCell& cell : result.cells) {
     if (cell.way != way) continue;
-    if (axes.empty() || axes.back().front()->axis != cell.axis) axes.emplace_back();
-    axes.back().push_back(&cell);
+    if (map.axes.empty() || map.axes.back().name != cell.axis) map.axes.push_back({cell.axis, {}});
+    map.axes.back().places.push_back(placeOf(cell));
   }
-  return axes;
+  return map;
 }
 
-/// "1e-3 to 10, 1e3": runs of values that may be trusted.
-std::string trustedRange(const std::vector<const StabilityCell*>& axis) {
-  std::string text;
-  for (size_t i = 0; i < axis.size();) {
-    if (!isTrusted(*axis[i])) {
-      ++i;
-      continue;
-    }
-    size_t last = i;
-    while (last + 1 < axis.size() && isTrusted(*axis[last + 1])) ++last;
-    text += text.empty() ? "" : ", ";
-    if (i == 0 && last + 1 == axis.size()) return "everywhere";
-    text += axis[i]->value + (last > i ? " to " + axis[last]->value : "");
-    i = last + 1;
-  }
-  return text.empty() ? "nowhere" : text;
-}
-
-void addMethod(std::ostream& out, const StabilityResult& result, size_t way) {
-  out << "\n## " << result.ways[way].name << "\n\n| axis | error along it | trusted |\n|---|---|---|\n";
-  for (const auto& axis : axesOf(result, way)) {
-    out << "| " << axis.front()->axis << " | ";
-    for (size_t i = 0; i < axis.size(); ++i)
-      out << (i > 0 ? ", " : "") << axis[i]->value << ": " << textOf(*axis[i]);
-    out << " | " << trustedRange(axis) << " |\n";
-  }
-}
-
-std::vector<HeatMap> mapsOf(const StabilityResult& result) {
+/// Of the ways that have figures.
+std::vector<HeatMap> heatMapsOf(const StabilityResult& result) {
   std::vector<HeatMap> maps;
   for (size_t way = 0; way < result.ways.size(); ++way) {
-    HeatMap map;
-    map.title = result.ways[way].name;
-    bool measured = false;
-    for (const auto& axis : axesOf(result, way)) {
-      HeatRow row{axis.front()->axis, {}, {}};
-      for (const StabilityCell* cell : axis) {
-        const bool wrong = !cell->refused.empty() || cell->bad.any();
-        row.values.push_back(wrong         ? map.high
-                             : cell->error ? cell->error->relativeRmse
-                                           : std::numeric_limits<double>::quiet_NaN());
-        row.labels.push_back(cell->value + ": " + textOf(*cell));
-        measured = measured || cell->error.has_value();
-      }
-      map.rows.push_back(std::move(row));
-    }
-    if (measured) maps.push_back(std::move(map));
+    const auto measured = [way](const StabilityCell& cell) { return cell.way == way && cell.error; };
+    if (std::any_of(result.cells.begin(), result.cells.end(), measured))
+      maps.push_back(heatMapOf(mapOf(result, way)));
   }
   return maps;
 }
@@ -124,7 +86,7 @@ std::string stabilityPage(const StabilityResult& result) {
          "shows no light) and free of NaN, infinity and negative values, as every other cell is too; `BAD` "
          "would mean\n"
          "that it is not. `refused`: the method says so with a sentence. ![map](stability.png)\n";
-  for (size_t way = 0; way < result.ways.size(); ++way) addMethod(out, result, way);
+  for (size_t way = 0; way < result.ways.size(); ++way) out << markdownOf(mapOf(result, way));
   if (!result.flicker.empty()) {
     out << "\n## Flicker\n\nThe error of each frame's change against truth's change, over mean radiance: a "
            "slow orbit (half a\n"
@@ -154,7 +116,7 @@ std::string writeStability(const std::string& folder, const StabilityResult& res
   writeCsv(folder + "/stability.csv", tableOf(result));
   writeText(folder + "/stability.md", stabilityPage(result));
   writeText(folder + "/stability_table.inc", trustRowsAsText(result));
-  return drawHeatMaps(mapsOf(result), folder, "stability");
+  return drawHeatMaps(heatMapsOf(result), folder, "stability");
 }
 
 }  // namespace nephele
