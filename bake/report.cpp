@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/run.h"
+#include "base/figures.h"
 
 namespace nephele {
 
@@ -45,6 +46,8 @@ Json bandLimitJson(const std::vector<BandLimitNote>& list) {
   for (const BandLimitNote& note : list)
     if (note.squeeze > 0.0)
       notes.push_back({{"field", note.field}, {"squeeze", note.squeeze}});
+    else if (note.thickness > 0.0)
+      notes.push_back({{"field", note.field}, {"thickness_voxels", note.thickness}});
     else
       notes.push_back({{"field", note.field},
                        {"octave", note.octave},
@@ -77,6 +80,26 @@ Json toleranceJson(const Choice& choice) {
 }
 
 }  // namespace
+
+std::string noteAsText(const BandLimitNote& note) {
+  // From the map of bakes (docs/stability.md): from there on voxels miss a tenth of an optical depth, and
+  // floats no longer say where a place is displaced to.
+  constexpr double kFine = 8.0, kChaos = 1e5;
+  if (note.squeeze >= kChaos)
+    return note.field + ": makes its input " + number(note.squeeze, 2) +
+           " times finer: rounding decides what is read";
+  if (note.squeeze >= kFine)
+    return note.field + ": makes its input " + number(note.squeeze, 2) +
+           " times finer, which voxels may not hold";
+  if (note.squeeze > 0.0) return {};
+  if (note.thickness > 0.0)
+    return note.field + ": " + number(note.thickness, 2) +
+           " voxels thick: voxels may miss it, or hold more than there is";
+  char text[160];
+  std::snprintf(text, sizeof text, "%s: octave %d has %.2f voxels a cell: %s", note.field.c_str(),
+                note.octave + 1, note.cellVoxels, note.weight > 0.0 ? "weakened" : "left out");
+  return text;
+}
 
 std::string reportAsJson(const std::vector<BakeRecord>& records) {
   Json assets = Json::array();

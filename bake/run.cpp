@@ -251,10 +251,8 @@ void tell(const BakeRecord& record) {
                   record.secondsWrite);
   std::cerr << line;
   for (const BandLimitNote& note : record.bandLimit.value_or(std::vector<BandLimitNote>{})) {
-    if (record.skipped || note.squeeze > 0.0) continue;  // in the report alone
-    std::snprintf(line, sizeof line, "  %s: octave %d has %.2f voxels a cell: %s\n", note.field.c_str(),
-                  note.octave + 1, note.cellVoxels, note.weight > 0.0 ? "weakened" : "left out");
-    std::cerr << line;
+    if (const std::string sentence = noteAsText(note); !record.skipped && !sentence.empty())
+      std::cerr << "  " << sentence << '\n';
   }
   for (const LoopNote& note : record.loopNotes)
     std::cerr << "  " << note.field << ": '" << note.parameter << "' of " << note.asked << " became "

@@ -84,6 +84,9 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
 /// Makes the folder and those above it where they are missing. Throws WorldError.
 void makeFolder(const std::string& folder);
 
+/// What people should know of a note, without the line's end; empty where the report alone tells it.
+std::string noteAsText(const BandLimitNote& note);
+
 /// The report of DESIGN.md, section 1: assets[{name, file, frame, seconds{…}, …}].
 std::string reportAsJson(const std::vector<BakeRecord>& records);
 

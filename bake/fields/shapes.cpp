@@ -122,15 +122,23 @@ struct HalfSpace {
 const Parameter kCentre{"center", ParameterType::vector, "Centre.", Value{std::array<double, 3>{0, 0, 0}},
                         kAny,     "world units"};
 
+/// Notes a shape so thin that samples may miss it, or stand for more than there is of it.
+void noteThin(const BuildContext& context, const char* field, double thickness) {
+  constexpr double kThin = 2.0;  // voxels; docs/stability.md, mass of thin shapes
+  const double voxels = thickness / context.voxelSize;
+  if (context.notes && voxels < kThin) context.notes->push_back({field, 0, 0.0, 1.0, 0.0, voxels});
+}
+
 template <class Shape>
 FieldPtr envelopeOf(const Arguments& a, const glm::dvec3& centre, const Shape& shape) {
   return std::make_shared<EnvelopeField<Shape>>(centre, shape, a.number("falloff"));
 }
 
+double shortestOf(const glm::dvec3& v) { return std::min({v.x, v.y, v.z}); }
+
 Complaint validateBox(const Arguments& a) {
   if (auto complaint = complainOfSizes(a, {}, {"size"})) return complaint;
-  const glm::dvec3 size = a.vector("size");
-  if (2.0 * a.number("rounding") > std::min({size.x, size.y, size.z}))
+  if (2.0 * a.number("rounding") > shortestOf(a.vector("size")))
     return {{"rounding", "'rounding' must not exceed half of the shortest edge"}};
   return std::nullopt;
 }
@@ -143,7 +151,8 @@ FieldRow sphereRow() {
           {kCentre,
            {"radius", ParameterType::number, "Radius.", Value{1.0}, kPositive, "world units"},
            falloffParameter(1.0)},
-          [](const Arguments& a, const BuildContext&) -> FieldPtr {
+          [](const Arguments& a, const BuildContext& context) -> FieldPtr {
+            noteThin(context, "sphere", 2.0 * a.number("radius"));
             return envelopeOf(a, a.vector("center"), Sphere{float(a.number("radius"))});
           },
           [](const Arguments& a) { return complainOfSizes(a, {"radius"}); }};
@@ -158,8 +167,9 @@ FieldRow ellipsoidRow() {
        {"radii", ParameterType::vector, "Half of its extent along x, y and z.",
         Value{std::array<double, 3>{1.0, 0.8, 0.6}}, kPositive, "world units"},
        falloffParameter(0.6)},
-      [](const Arguments& a, const BuildContext&) -> FieldPtr {
+      [](const Arguments& a, const BuildContext& context) -> FieldPtr {
         const glm::vec3 radii(a.vector("radii"));
+        noteThin(context, "ellipsoid", 2.0 * shortestOf(a.vector("radii")));
         return envelopeOf(a, a.vector("center"), Ellipsoid{radii, std::min({radii.x, radii.y, radii.z})});
       },
       [](const Arguments& a) { return complainOfSizes(a, {}, {"radii"}); }};
@@ -174,7 +184,8 @@ FieldRow boxRow() {
            {"rounding", ParameterType::number, "Radius of its edges and corners, within its size.",
             Value{0.1}, kNonNegative, "world units"},
            falloffParameter(0.3)},
-          [](const Arguments& a, const BuildContext&) -> FieldPtr {
+          [](const Arguments& a, const BuildContext& context) -> FieldPtr {
+            noteThin(context, "box", shortestOf(a.vector("size")));
             return envelopeOf(a, a.vector("center"),
                               RoundedBox{glm::vec3(0.5 * a.vector("size")), float(a.number("rounding"))});
           },
@@ -191,7 +202,8 @@ FieldRow capsuleRow() {
             "world units"},
            {"radius", ParameterType::number, "Radius.", Value{0.4}, kPositive, "world units"},
            falloffParameter(0.4)},
-          [](const Arguments& a, const BuildContext&) -> FieldPtr {
+          [](const Arguments& a, const BuildContext& context) -> FieldPtr {
+            noteThin(context, "capsule", 2.0 * a.number("radius"));
             const glm::dvec3 from = a.vector("from");
             return envelopeOf(a, from, Capsule{glm::vec3(a.vector("to") - from), float(a.number("radius"))});
           },
@@ -209,6 +221,7 @@ FieldRow torusRow() {
        {"minor", ParameterType::number, "Radius of its cross-section.", Value{0.3}, kPositive, "world units"},
        falloffParameter(0.3)},
       [](const Arguments& a, const BuildContext& context) -> FieldPtr {
+        noteThin(context, "torus", 2.0 * a.number("minor"));
         return envelopeOf(a, a.vector("center"),
                           Torus{glm::vec3(directionOrUp(a.vector("axis"), context)), float(a.number("major")),
                                 float(a.number("minor"))});

@@ -47,13 +47,15 @@ struct Parameter {
   std::vector<std::string> choices{};  // type == choice
 };
 
-/// An octave or a whole noise that was left out or weakened because the grid cannot hold it.
+/// Something that the grid cannot hold: an octave or a whole noise that was left out or weakened for it, a warp
+/// that makes its input finer, a shape that is thin.
 struct BandLimitNote {
   std::string field;
   int octave = 0;           // from 0
   double cellVoxels = 0.0;  // voxels per noise cell
   double weight = 0.0;      // 0: left out
   double squeeze = 0.0;     // above 0: a warp, and how many times finer (rms) it makes what it displaces
+  double thickness = 0.0;   // above 0: a shape, and how many voxels it is thick
 };
 
 /// More octaves than any field has.

@@ -116,6 +116,25 @@ TEST(Warp, TellsHowMuchFinerItMakesItsInput) {
   EXPECT_GT(squeeze(1.0, 2), squeeze(1.0, 1));
 }
 
+TEST(BandLimit, ThinShapesAreNoted) {
+  const std::pair<const char*, std::map<std::string, Value, std::less<>>> shapes[] = {
+      {"sphere", {{"radius", 0.009}}},
+      {"ellipsoid", {{"radii", Vector{1, 1, 0.009}}}},
+      {"box", {{"size", Vector{1, 0.018, 1}}, {"rounding", 0.0}}},
+      {"capsule", {{"radius", 0.009}}},
+      {"torus", {{"minor", 0.009}}}};
+  for (const auto& [name, given] : shapes) {
+    std::vector<BandLimitNote> notes;
+    makeField(name, given, {0.01, 2, 0, &notes});
+    ASSERT_EQ(notes.size(), 1u) << name;
+    EXPECT_EQ(notes[0].field, name);
+    EXPECT_NEAR(notes[0].thickness, 1.8, 1e-9) << name;
+    notes.clear();
+    makeField(name, given, {0.005, 2, 0, &notes});
+    EXPECT_TRUE(notes.empty()) << name;
+  }
+}
+
 TEST(BandLimit, LoneNoiseFadesToItsMean) {
   for (const char* const name : {"worley", "curl"}) {
     std::vector<BandLimitNote> notes;

@@ -155,6 +155,12 @@ BAKE = [
     says("bake pipeline.yaml", 2, "pipeline.yaml:4:17: error:", "pipeline.yaml:6:15: error: unknown field 'sphre'",
          "pipeline.yaml:6:30: error: unknown field 'perlim'", recipe=GOOD_RECIPE.replace("0.1", "-1").replace(
              SPHERE, "union: [sphre, { max: [perlim] }]"), note="all errors at once"),
+    says("bake pipeline.yaml", 0, "box: 0.3 voxels thick: voxels may miss it, or hold more than there is",
+         recipe=with_density("box: { size: [1, 1, 0.03], rounding: 0 }"), note="a thin box"),
+    says("bake pipeline.yaml", 0, "warp: makes its input 12 times finer, which voxels may not hold",
+         recipe=with_density("multiply: [sphere, { warp: { input: fbm, warp_scale: 10, octaves: 1 } }]"), note="a wide warp"),
+    says("bake pipeline.yaml", 0, "times finer: rounding decides what is read", recipe=with_density(
+        "multiply: [sphere, { warp: { input: fbm, warp_scale: 100, iterations: 3 } }]"), note="a wide warp of a warp"),
     # particles
     prints("bake pipeline.yaml --dry-run --frames 2-3", "out/puff_0002.vdb\nout/puff_0003.vdb", recipe=PARTICLES),
     says("bake pipeline.yaml --frames 1-2 --shard 2/2", 0, "puff_0002.vdb", "40 particles", recipe=PARTICLES),
