@@ -8,6 +8,7 @@
 #include "bake/cost_chart.h"
 #include "bake/nodes.h"
 #include "bake/run.h"
+#include "bake/stability_page.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/memory.h"
@@ -28,7 +29,7 @@ struct Command {
   bool dryRun = false;
   std::string report;
   std::vector<std::string> files;
-  bool json = false;
+  bool json = false, stability = false;
   std::string node;
   std::string first, second, tolerance, page;
 };
@@ -97,7 +98,19 @@ int diff(const Command& command) {
   return tolerance >= 0.0 && over ? kExitNo : kExitDone;
 }
 
+int stability(const Command& command) {
+  makeFolder(command.options.outFolder);
+  requireWritable(command.options.outFolder + "/stability.csv");
+  const BakeStability result = runBakeStability(command.options.quiet);
+  const std::string unable = writeBakeStability(command.options.outFolder, result);
+  if (!unable.empty()) std::cerr << "warning: " << unable << '\n';
+  const std::vector<std::string> bad = badBakes(result);
+  for (const std::string& sentence : bad) std::cerr << sentence << '\n';
+  return bad.empty() ? kExitDone : kExitNo;
+}
+
 int chart(const Command& command) {
+  if (command.stability) return stability(command);
   const Pipeline pipeline = loadPipeline(command.pipeline);
   BakeOptions options = command.options;
   if (options.only.empty() && pipeline.assets.size() == 1) options.only = {pipeline.assets.front().name};
@@ -167,6 +180,9 @@ int run(int argc, char** argv) {
   chartCommand
       ->add_option("--out", command.options.outFolder, "Folder for chart.csv, .svg, .png and index.html")
       ->type_name("DIR");
+  chartCommand->add_flag("--stability", command.stability,
+                         "In place of a chart: where bakes may be trusted, as stability.csv, .svg, .png and "
+                         ".md; needs no recipe; exit 3 where a density holds what none may");
   chartCommand->add_flag("--quiet", command.options.quiet, "Say nothing but errors and warnings");
   for (const char* const name : {"check"})
     app.add_subcommand(name, "Not built yet")->allow_extras()->callback([name] { notBuilt(name); });

@@ -287,10 +287,7 @@ class SpecHasher {
   std::map<const FieldSpec*, std::string> digests_;
 };
 
-}  // namespace
-
-Pipeline loadPipeline(const std::string& path) {
-  const yaml::NodePtr root = yaml::load(path);
+Pipeline pipelineOf(const yaml::NodePtr& root, const std::string& path) {
   Diagnostics out;
   Pipeline pipeline;
   pipeline.path = path;
@@ -313,6 +310,14 @@ Pipeline loadPipeline(const std::string& path) {
   reader.finish();
   out.throwIfAny();
   return pipeline;
+}
+
+}  // namespace
+
+Pipeline loadPipeline(const std::string& path) { return pipelineOf(yaml::load(path), path); }
+
+Pipeline readPipeline(const std::string& text, const std::string& name) {
+  return pipelineOf(yaml::parse(text, name), name);
 }
 
 std::optional<FrameRange> parseFrames(const std::string& text) {

@@ -68,6 +68,9 @@ struct Pipeline {
 /// Reads a recipe. Throws InputError with all of its errors.
 Pipeline loadPipeline(const std::string& path);
 
+/// Reads a recipe that is a text already; `name` stands for its file in sentences.
+Pipeline readPipeline(const std::string& text, const std::string& name);
+
 /// Frames have at most six digits.
 inline constexpr int kLastFrame = 999999;
 

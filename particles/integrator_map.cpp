@@ -1,11 +1,10 @@
-// The cases of the integrators' map. Depends on integrator_map.h, simulation.h, base.
+// The cases of the integrators' map. Depends on integrator_map.h, simulation.h.
 #include "particles/integrator_map.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include "base/figures.h"
 #include "particles/simulation.h"
 
 namespace nephele {
@@ -157,15 +156,6 @@ IntegratorRow rowOf(const Case& c, double step, const Path& truth) {
   return row;
 }
 
-std::string cellOf(const IntegratorRow& row) {
-  constexpr double kUnseen = 5e-4;
-  if (row.verdict == IntegratorVerdict::refused) return "refused";
-  const std::string error = *row.error < kUnseen ? "< 0.05%" : percent(*row.error);
-  return row.verdict == IntegratorVerdict::trusted   ? error
-         : row.verdict == IntegratorVerdict::bounded ? error + ", bounded"
-                                                     : error + ", GROWS";
-}
-
 }  // namespace
 
 std::vector<IntegratorRow> integratorMap() {
@@ -175,24 +165,6 @@ std::vector<IntegratorRow> integratorMap() {
     for (const double step : kSteps) rows.push_back(rowOf(c, step, truth));
   }
   return rows;
-}
-
-std::string integratorTable(const std::vector<IntegratorRow>& rows) {
-  std::string table = "| force | strength |";
-  std::string rule = "|---|---|";
-  for (const double step : kSteps) {
-    table += step < 1.0 ? " 1/" + number(1.0 / step) + " s |" : " " + number(step) + " s |";
-    rule += "---|";
-  }
-  table += "\n" + rule + "\n";
-  const IntegratorRow* last = nullptr;
-  for (const IntegratorRow& row : rows) {
-    if (!last || last->axis != row.axis || last->strength != row.strength)
-      table += (last ? "\n| " : "| ") + row.axis + " | " + number(row.strength) + " |";
-    table += " " + cellOf(row) + " |";
-    last = &row;
-  }
-  return table + "\n";
 }
 
 }  // namespace nephele

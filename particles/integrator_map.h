@@ -1,5 +1,5 @@
 // Where the integrators of particle motion may be trusted: stiff forces at short and long steps, against
-// closed forms or finely stepped runs. Depends on simulation.h.
+// closed forms or finely stepped runs: rows of docs/stability.md. Depends on simulation.h.
 #pragma once
 
 #include <optional>
@@ -31,8 +31,5 @@ struct IntegratorRow {
 /// Every row, by axis, strength and step: drag, vortices, springs, pushes and a runaway, at steps of 1/240 to
 /// 1 second for four seconds. The same figures on any machine, but for the last digits of the library's exp.
 std::vector<IntegratorRow> integratorMap();
-
-/// The rows as a table of Markdown: one line an axis and strength, one column a step.
-std::string integratorTable(const std::vector<IntegratorRow>& rows);
 
 }  // namespace nephele
