@@ -12,9 +12,8 @@ namespace nephele {
 inline constexpr double kMovingCacheSeconds = 0.012;
 
 /// The march of a moving picture: longer steps, light from the cache alone, rays that end at a fiftieth. On
-/// the default cumulus at half the window's sides, sharpened (gpu/sharpen.h), that differs by 3 to 8%
-/// relative RMSE from its picture at rest, most with the sun behind it, where the smaller picture alone would
-/// differ by 5 (bench/moving.cpp prints the figures).
+/// the default cumulus at half the window's sides, sharpened (gpu/sharpen.h), that differs by 4 to 10%
+/// relative RMSE from its picture at rest, most with the sun behind it (bench/moving.cpp prints the figures).
 inline MarchSettings movingMarch(MarchSettings march) {
   constexpr double kLeastStepVoxels = 4.0, kGiveUp = 0.02;
   const double factor = std::max(1.0, kLeastStepVoxels / march.stepVoxels);
