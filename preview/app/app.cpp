@@ -42,8 +42,7 @@ class App {
 
   int run() {
     desk_.begin();
-    // ImGui lays windows out in their first frames and shows them after: those frames nobody should see.
-    for (int i = 0; i < kFramesAfterEvent; ++i) panel_->draw(desk_.state(), desk_.facts());
+    for (int i = 0; i < kFramesAfterEvent; ++i) panel_->build(desk_.state(), desk_.facts());
     while (!window_.closing()) turn();
     desk_.writeStats();
     return kExitDone;
@@ -63,6 +62,7 @@ class App {
     const Clock::time_point now = Clock::now();
     const double seconds = secondsBetween(std::exchange(lastTurn_, now), now);
     if (hands.any) framesLeft_ = kFramesAfterEvent;
+    presses_ += hands.presses;
     desk_.takeHands(hands);
     if (secondsBetween(lastLook_, now) >= kLookSeconds) {
       lastLook_ = now;
@@ -94,6 +94,7 @@ class App {
     window_.panelWantsMouse = panel_->wantsMouse();
     window_.panelWantsKeys = panel_->wantsKeys();
     window_.swap();
+    if (framesLeft_ == 0) desk_.noteShown(presses_);
   }
 
   double sleepSeconds() const {
@@ -109,6 +110,7 @@ class App {
   std::optional<Panel> panel_;  // last: goes first, while the context lives
   bool more_ = true;
   int framesLeft_ = kFramesAfterEvent;
+  uint64_t presses_ = 0;  // that were taken so far
   Clock::time_point lastTurn_ = Clock::now(), lastLook_ = Clock::now(), lastDrawn_{};
 };
 

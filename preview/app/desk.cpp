@@ -116,12 +116,13 @@ LaneRequest Desk::request(const Settings& settings) const {
 void Desk::restart() {
   window_.framebufferSize(width_, height_);
   ++restarts_;
-  statsKnown_ = false;
+  const bool known = std::exchange(statsKnown_, false);
   if (width_ < 1 || height_ < 1) return;
   followLive();
   viewer_.setGoal(state_.goal);
   viewer_.restart(Side::edited, request(state_.settings));
   if (state_.kept) viewer_.restart(Side::kept, request(*state_.kept));
+  if (known) writeStats();
 }
 
 std::array<Shown, kSideCount> Desk::shown() const {
@@ -154,6 +155,11 @@ bool Desk::work(double seconds) {
   return more;
 }
 
+void Desk::lookAtFiles() {
+  document_.lookAtFiles();
+  if (live_ && live_->playing()) writeStats();
+}
+
 bool Desk::advance(double seconds) {
   fly(seconds);
   const DocumentNews news = document_.advance(seconds);
@@ -167,8 +173,10 @@ bool Desk::advance(double seconds) {
 }
 
 void Desk::takeNews(const DocumentNews& news) {
-  if (!news.notice.empty()) say(news.notice);
-  if (!news.volume) return;
+  if (!news.volume) {
+    if (!news.notice.empty()) say(news.notice);
+    return;
+  }
   live_.reset();
   try {
     viewer_.setVolume(news.volume);
@@ -177,15 +185,18 @@ void Desk::takeNews(const DocumentNews& news) {
     return;
   }
   for (const std::string& note : news.volume->notes) std::cerr << note << '\n';
+  std::string complaint;
   try {
     adopt(news.otherFile);
     if (news.otherFile) exposeOther();
   } catch (const InputError& error) {  // its metadata holds no medium: the one before stays
-    say(error.what());
+    complaint = error.what();
     firstCamera_ = framed(*news.volume, orbit_.camera().fov);
     orbit_ = OrbitCamera(firstCamera_);
     restart();
   }
+  for (const std::string& sentence : {news.notice, complaint})
+    if (!sentence.empty()) say(sentence);
   // While a sequence plays, its next frame takes the place of this one.
   if (!document_.timeline().playing()) returnFreeMemory();
   writeStats();
@@ -231,15 +242,22 @@ UiFacts Desk::facts() const {
   return facts;
 }
 
+void Desk::noteShown(uint64_t presses) {
+  if (std::exchange(pressesShown_, presses) != presses) writeStats();
+}
+
 void Desk::writeStats() const {
   if (options_.render.stats.empty()) return;
   const GlCounts counts = glCounts();
   const LaneStats lane = viewer_.stats(Side::edited);
   const nlohmann::ordered_json stats{{"pictures_begun", restarts_},
+                                     {"presses_shown", pressesShown_},
+                                     {"live_frame", live_ ? live_->frame() : 0},
                                      {"ms_per_frame", lane.sampleMilliseconds},
                                      {"samples", lane.samples},
                                      {"samples_per_pixel", lane.densitySamplesPerPixel},
                                      {"noise", lane.noise},
+                                     {"noise_known", statsKnown_},
                                      {"gpu_bytes", viewer_.gpuBytes()},
                                      {"moving_frames", pace_.frames()},
                                      {"moving_per_second", pace_.perSecond()},

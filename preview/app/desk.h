@@ -39,7 +39,7 @@ class Desk {
   void takeHands(const Hands& hands);
   /// `before`: the settings before the panel was drawn. `held`: a widget is, and its changes are one step.
   void takeWishes(const UiWishes& wishes, const Settings& before, bool held);
-  void lookAtFiles() { document_.lookAtFiles(); }
+  void lookAtFiles();
   /// Lets files, frames and flight come on. Returns whether anything was changed that should be seen.
   bool advance(double seconds);
   /// As Viewer::work; what cannot be drawn becomes a notice.
@@ -51,8 +51,10 @@ class Desk {
 
   UiState& state() { return state_; }
   UiFacts facts() const;
-  /// To the file of --stats, where one is asked for: when a file is shown, when a picture's noise is first
-  /// known, and at the end.
+  /// What so many presses did is on the screen.
+  void noteShown(uint64_t presses);
+  /// To the file of --stats, where one is asked for: when a file is shown, when a picture begins anew, when
+  /// its noise is first known, when what hands did is shown, while particles play live, and at the end.
   void writeStats() const;
 
  private:
@@ -117,6 +119,7 @@ class Desk {
   int width_ = 0, height_ = 0;
   uint64_t restarts_ = 0;
   bool statsKnown_ = false;  // for the picture that is being drawn
+  uint64_t pressesShown_ = 0;
 };
 
 }  // namespace nephele

@@ -95,7 +95,9 @@ void Desk::takeKey(const KeyPress& press) {
 void Desk::act(Action action) {
   switch (action) {
     case Action::quit:
-      if (state_.help)
+      if (state_.listOpen)
+        state_.listOpen = false;
+      else if (state_.help)
         state_.help = false;
       else
         window_.close();

@@ -11,6 +11,7 @@ namespace nephele {
 namespace {
 
 constexpr float kMargin = 8.0f;
+constexpr float kGround = 0.75f;  // opacity that white text needs over white pictures
 constexpr ImGuiWindowFlags kOverlay =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_AlwaysAutoResize;
@@ -48,7 +49,7 @@ void scaleBar(View view, double top) {
   constexpr float kWidth = 160.0f, kHeight = 8.0f;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x - kMargin, 0.5f * screen.y}, ImGuiCond_Always, {1.0f, 0.5f});
-  ImGui::SetNextWindowBgAlpha(0.5f);
+  ImGui::SetNextWindowBgAlpha(kGround);
   if (ImGui::Begin("Scale", nullptr, kOverlay)) {
     ImGui::TextUnformatted(rowOf(view).name.data());
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -67,18 +68,17 @@ void scaleBar(View view, double top) {
 
 }  // namespace
 
-void headUpLine(const UiState& state, const UiFacts& facts, bool full) {
-  if (!full && facts.warnings.empty()) return;
-  constexpr float kWidest = 460.0f;
+void headUpLine(const UiState& state, const UiFacts& facts) {
+  constexpr float kWidest = 35.0f;  // in heights of the font
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x - kMargin, kMargin}, ImGuiCond_Always, {1.0f, 0.0f});
-  ImGui::SetNextWindowBgAlpha(0.5f);
+  ImGui::SetNextWindowBgAlpha(kGround);
   if (ImGui::Begin("Figures", nullptr, kOverlay)) {
     // As wide as the widest line needs, within half of the screen.
-    ImGui::PushTextWrapPos(std::min(kWidest, 0.5f * screen.x));
-    if (full) ImGui::TextUnformatted(figures(facts).c_str());
+    ImGui::PushTextWrapPos(std::min(widgets::ems(kWidest), 0.5f * screen.x));
+    ImGui::TextUnformatted(figures(facts).c_str());
     for (const std::string& warning : facts.warnings) widgets::warning(warning);
-    if (full && !state.notice.empty()) ImGui::TextWrapped("%s", state.notice.c_str());
+    if (!state.notice.empty()) ImGui::TextWrapped("%s", state.notice.c_str());
     ImGui::PopTextWrapPos();
   }
   ImGui::End();

@@ -16,6 +16,8 @@ class Panel {
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
+  /// Lays everything out without drawing it. ImGui shows windows only after frames that nobody should see.
+  UiWishes build(UiState& state, const UiFacts& facts);
   /// Builds and draws into the current framebuffer.
   UiWishes draw(UiState& state, const UiFacts& facts);
   bool wantsMouse() const;

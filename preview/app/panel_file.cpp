@@ -49,7 +49,8 @@ void fileParts(UiState& state, const UiFacts& facts, UiWishes& wishes) {
 void timelineStrip(const UiFacts& facts, UiWishes& wishes) {
   const Timeline& timeline = facts.document.timeline();
   if (timeline.frames() < 2 || facts.live) return;
-  constexpr float kMargin = 8.0f, kFpsWidth = 70.0f, kHeightShare = 1.0f;
+  constexpr float kMargin = 8.0f, kHeightShare = 1.0f;
+  const float fpsWidth = widgets::ems(5.0f);
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * screen.x, screen.y - kMargin}, ImGuiCond_Always, {0.5f, kHeightShare});
   ImGui::SetNextWindowSize({screen.x - 2.0f * kMargin, 0.0f});
@@ -65,12 +66,12 @@ void timelineStrip(const UiFacts& facts, UiWishes& wishes) {
     // The slider moves over positions and names the frame there.
     const std::string label = "frame " + std::to_string(frame.number) + (timeline.waiting() ? " ..." : "");
     int wanted = timeline.position();
-    ImGui::SetNextItemWidth(-kFpsWidth - kMargin);
+    ImGui::SetNextItemWidth(-fpsWidth - kMargin);
     if (ImGui::SliderInt("##frame", &wanted, 0, timeline.frames() - 1, label.c_str())) wishes.frame = wanted;
     ImGui::SameLine();
     constexpr double kSlowest = 1.0, kFastest = 60.0;
     double fps = timeline.fps();
-    ImGui::SetNextItemWidth(kFpsWidth);
+    ImGui::SetNextItemWidth(fpsWidth);
     if (widgets::slider("##fps", fps, kSlowest, kFastest, "%.0f fps")) wishes.fps = fps;
   }
   ImGui::End();

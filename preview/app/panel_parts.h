@@ -19,8 +19,8 @@ void liveParts(UiState& state, const UiFacts& facts, UiWishes& wishes);
 void fileParts(UiState& state, const UiFacts& facts, UiWishes& wishes);
 /// The strip at the lower edge; nothing where there is no sequence, or while particles are moved live.
 void timelineStrip(const UiFacts& facts, UiWishes& wishes);
-/// The head-up line, warnings and notice at the upper right; warnings alone where `full` is false.
-void headUpLine(const UiState& state, const UiFacts& facts, bool full);
+/// The head-up line, warnings and notice at the upper right.
+void headUpLine(const UiState& state, const UiFacts& facts);
 /// The divider of the split, and the scale of the view's colours.
 void pictureMarks(const UiState& state, const UiFacts& facts);
 /// The list of keys.

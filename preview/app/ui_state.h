@@ -25,6 +25,7 @@ struct UiState {
   glm::dvec3 up{0.0, 0.0, 1.0};
   bool visible = true;
   bool help = false;
+  bool listOpen = false;  // a list to choose from is unfolded; set to false, the panel folds it
   std::string notice;     // the last thing done or refused, as a sentence
   std::string sceneFile;  // where the scene is saved to and read from
 };

@@ -11,6 +11,7 @@ namespace nephele::widgets {
 namespace {
 
 const ImVec4 kWarningColour(1.0f, 0.72f, 0.30f, 1.0f);
+constexpr double kStill = 1e-9;          // of a slider's range
 constexpr double kLeastSpeed = 1e-4;     // of a drag, for values near 0
 constexpr double kSpeedPerValue = 0.01;  // a hundred pixels double a value
 // IEC 61966-2-1.
@@ -23,10 +24,18 @@ double linear(double x) {
 
 }  // namespace
 
+float ems(float count) { return count * ImGui::GetFontSize(); }
+
 bool slider(const char* label, double& value, double low, double high, const char* format, bool logarithmic) {
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
-  return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, format, flags);
+  const double before = value;
+  if (!ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, format, flags)) return false;
+  // A value that is kept in another unit comes back rounded: a slider held still must not begin pictures
+  // anew.
+  if (std::abs(value - before) > kStill * (high - low)) return true;
+  value = before;
+  return false;
 }
 
 bool amount(const char* label, double& value, const char* format) {

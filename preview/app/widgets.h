@@ -7,6 +7,9 @@
 
 namespace nephele::widgets {
 
+/// So many heights of the font, in pixels.
+float ems(float count);
+
 /// Each returns whether the value was changed. Sliders do not leave their range; dragged numbers stay at
 /// least 0 where they say so.
 bool slider(const char* label, double& value, double low, double high, const char* format,

@@ -55,6 +55,7 @@ void Window::listen() {
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) {
     Window& window = windowOf(w);
     window.hands_.any = true;
+    ++window.hands_.presses;
     if (!window.panelWantsMouse) window.hands_.scroll += y;
   });
   glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int modifiers) {
@@ -63,6 +64,7 @@ void Window::listen() {
   glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
     Window& window = windowOf(w);
     window.hands_.any = true;
+    ++window.hands_.presses;
     for (int i = 0; i < count; ++i) window.hands_.drops.emplace_back(paths[i]);
   });
   glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { windowOf(w).hands_.any = true; });
@@ -92,6 +94,7 @@ bool Window::isDoubleClick(double x, double y) {
 
 void Window::onButton(int button, int action, int modifiers) {
   hands_.any = true;
+  ++hands_.presses;
   if (action == GLFW_RELEASE) {
     hands_.released = drag_ != Dragging::none;
     drag_ = Dragging::none;
@@ -130,6 +133,7 @@ void Window::onMove(double x, double y) {
 
 void Window::onKey(int key, int action, int modifiers) {
   hands_.any = true;
+  if (action != GLFW_REPEAT) ++hands_.presses;
   if (action != GLFW_PRESS || panelWantsKeys || flying()) return;
   hands_.keys.push_back({key, (modifiers & GLFW_MOD_CONTROL) != 0, (modifiers & GLFW_MOD_SHIFT) != 0});
 }

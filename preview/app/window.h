@@ -1,6 +1,7 @@
 // The GLFW window and what hands do to it, as plain events. Depends on GLFW and gpu/gl.h.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ struct Hands {
   std::optional<Place> doubleClick;
   std::vector<std::string> drops;  // paths
   bool released = false;           // a drag has ended
-  bool any = false;                // anything at all: the panel may want to be drawn again
+  uint64_t presses = 0;  // and releases of keys and buttons (not repeats), notches of the wheel, drops
+  bool any = false;      // anything at all: the panel may want to be drawn again
 };
 
 /// Where the keys of flying push: each −1, 0 or 1.

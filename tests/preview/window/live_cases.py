@@ -9,13 +9,12 @@ import json
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 from window import Window, under_xvfb
 
 PREVIEW, BAKE, MAKE_BALL = sys.argv[1:4]
-LATER = 2.0  # seconds, after which particles have gone far and warnings stand over the picture
+FAR = 20  # frames
 RECIPE = """\
 up_axis: z
 seed: 4
@@ -48,25 +47,23 @@ def particles_live(folder):
     bake(folder, "puff.yaml")
     w = Window(PREVIEW, folder, "puff_0030.vdb")
     try:
-        with_panel = w.picture()
-        w.key("h")  # pictures without the panel
-        w.until_unlike(with_panel, "H does not hide the panel", bottom=0.12)
-        time.sleep(LATER)
-        baked = w.picture()
+        w.key("h")  # pictures without panel, warnings and notices
+        baked = w.settled()
         w.key("p")
         w.until_said("particles are moved live")
         w.until_unlike(baked, "the particles of time 0 look like those of frame 30")
         # At time 0 a ball stands where a plume rises later: playing changes the picture, and goes on to.
         early = w.picture()
         w.until_unlike(early, "the particles do not move")
-        time.sleep(LATER)  # a system begun anew, played and paused must not look alike
+        # Far enough on that a system begun anew, played and paused does not look alike.
+        w.until(lambda: w.stat("live_frame") > FAR, "the particles do not move on")
         w.key("space")
         w.until_said("live particles pause")
-        paused = w.at_rest()
+        paused = w.settled()
         w.key("shift+p", "space", "space")
         w.until_said("live particles pause", times=2)
         w.until_unlike(paused, "reset does not begin anew")
-        begun = w.at_rest()  # until_unlike() may have waited for its last picture already
+        begun = w.settled()
         w.key("Right", "Right", "Right", "Right", "Right", "Right")
         w.until_unlike(begun, "stepping on does not move them")
         w.key("b")

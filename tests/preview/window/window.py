@@ -41,8 +41,8 @@ def under_xvfb():
 class Window:
     """One run of the previewer in a folder."""
 
-    def __init__(self, program, folder, file, *options, size=(240, 160), scene="light.yaml"):
-        """`scene`: QUICK_LIGHT where it is left out; None: the one that files open in."""
+    def __init__(self, program, folder, file, *options, size=(240, 160), scene="light.yaml", rest=True):
+        """`scene`: QUICK_LIGHT where it is left out; None: the one that files open in. `rest`: waits for a whole picture."""
         self.folder = folder
         (folder / "light.yaml").write_text(QUICK_LIGHT)
         self.log_path = folder / "preview.log"
@@ -53,11 +53,12 @@ class Window:
                                         cwd=folder, stderr=self.log, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
         self.screen = x11.Screen()
         self.stats_path = folder / "stats.json"
-        self.seen = 0  # pictures begun
+        self.sent = 0  # presses and releases of keys and buttons, notches of the wheel, drops
         try:
             self.id = self.until(self.find, "no window appeared")
             x11.xdotool("windowfocus", self.id)
-            self.settled()
+            if rest:
+                self.settled()
         except BaseException:
             self.kill()
             raise
@@ -86,6 +87,11 @@ class Window:
     def key(self, *names):
         for name in names:
             x11.xdotool("key", "--clearmodifiers", name)
+            self.sent += 2 * len(name.split("+"))
+
+    def hands(self, *words, presses):
+        x11.xdotool(*words)
+        self.sent += presses
 
     def drag(self, start, end, button=1, modifier=None, steps=6):
         """From one place to another; places are shares of the window's sides."""
@@ -93,21 +99,39 @@ class Window:
             x11.xdotool("mousemove", int(place[0] * self.size[0]), int(place[1] * self.size[1]))
         move(start)
         if modifier:
-            x11.xdotool("keydown", modifier)
-        x11.xdotool("mousedown", button)
+            self.hands("keydown", modifier, presses=1)
+        self.hands("mousedown", button, presses=1)
         for i in range(1, steps + 1):
             move([a + (b - a) * i / steps for a, b in zip(start, end)])
             time.sleep(0.02)
-        x11.xdotool("mouseup", button)
+        self.hands("mouseup", button, presses=1)
         if modifier:
-            x11.xdotool("keyup", modifier)
+            self.hands("keyup", modifier, presses=1)
+
+    def click(self, x, y):
+        """At a place in pixels. The panel looks once a frame: it is let see the press before the release."""
+        self.hands("mousemove", x, y, "mousedown", 1, presses=1)
+        self.until_shown()
+        self.hands("mouseup", 1, presses=1)
+        self.until_shown()
+
+    def wheel(self, notches):
+        """Over the window's middle; towards the screen where `notches` is above 0."""
+        self.hands("mousemove", self.size[0] // 2, self.size[1] // 2, "click", "--repeat", abs(notches),
+                   4 if notches > 0 else 5, presses=abs(notches))
+
+    def fly(self, key, seconds):
+        """Holds the right button and a key for that long."""
+        self.hands("mousemove", self.size[0] // 2, self.size[1] // 2, "mousedown", 3, "keydown", key, "sleep", seconds,
+                   "keyup", key, "mouseup", 3, presses=4)
 
     def double_click(self, place):
-        x11.xdotool("mousemove", int(place[0] * self.size[0]), int(place[1] * self.size[1]), "click", "--repeat", 2,
-                    "--delay", 60, 1)
+        self.hands("mousemove", int(place[0] * self.size[0]), int(place[1] * self.size[1]), "click", "--repeat", 2,
+                   "--delay", 60, 1, presses=4)
 
     def drop(self, path):
         self.screen.drop(self.id, path)
+        self.sent += 1
 
     def resize(self, width, height):
         x11.xdotool("windowsize", self.id, width, height)
@@ -121,43 +145,39 @@ class Window:
         except FileNotFoundError:
             return None
 
-    def settled(self):
-        """The picture after something that began it anew: once its noise is known, and nothing begins another."""
-        return self.at_rest(self.seen + 1)
+    def until_shown(self):
+        """Until what all hands so far have done is on the screen, as the program tells."""
+        self.until(lambda: self.stat("presses_shown") >= self.sent, "it does not show what hands did")
 
-    def at_rest(self, least=1):
-        """The picture once nothing begins another: that of number `least`, or a later one. It may stand there already."""
-        def begun():
-            stats = self.stats()
-            return stats["pictures_begun"] if stats and stats["samples"] > 0 else 0
+    def stat(self, key):
+        """0 before there are any."""
+        return (self.stats() or {}).get(key, 0)
+
+    def settled(self):
+        """The picture after all that hands did so far, once its noise is known and nothing begins another. What comes by
+        itself, a file that is read, is waited for before."""
+        self.until_shown()
 
         def calm():
-            now, before = begun(), self.picture()
-            if now < least or before is None:
+            begun, before = self.stat("pictures_begun"), self.picture()
+            if not self.stat("noise_known") or before is None:
                 return False
             time.sleep(CALM)
             after = self.picture()
-            return begun() == now and after is not None and after.like(before)
-        self.until(calm, "no new picture" if least > self.seen else "the picture does not come to rest")
-        self.seen = begun()
+            return self.stat("pictures_begun") == begun and after is not None and after.like(before)
+        self.until(calm, "the picture does not come to rest")
         return self.picture()
 
     def until_like(self, picture, complaint, **region):
-        """Until the window shows that picture, or a part of it. What is shown then is what settled() waits to change."""
+        """Until the window shows that picture, or a part of it."""
         self.until(lambda: self.shows(picture) and self.picture().difference(picture, **region) < ALIKE, complaint)
-        self.see()
 
     def until_unlike(self, picture, complaint, **region):
         self.until(lambda: self.shows(picture) and self.picture().difference(picture, **region) > CHANGED, complaint)
-        self.see()
 
     def shows(self, picture):
         now = self.picture()
         return now is not None and (now.width, now.height) == (picture.width, picture.height)
-
-    def see(self):
-        stats = self.stats()
-        self.seen = max(self.seen, stats["pictures_begun"] if stats else 0)
 
     def end(self):
         """Closes the window as its frame would; returns the exit code."""

@@ -16,6 +16,12 @@ from window import ALIKE, CHANGED, Window, under_xvfb
 PREVIEW, MAKE_BALL = sys.argv[1:3]
 TRIES = 10
 BALL_SHOWS = 40  # of 255: the ball against the backdrop beside it
+FLIGHT = 0.4  # seconds
+# Pixels of a window in which the panel stands open, and of widgets in it.
+WITH_PANEL = (800, 450)
+BESIDE_PANEL = 0.35  # of the width: what lies right of that is picture
+GRID, UNDO, EXPOSURE, ELEVATION = (60, 61), (35, 82), (95, 153), (30, 239)
+ENTRY = 17  # height of an entry of the chooser
 OPENED = []  # windows of the case that runs, to be ended with it
 
 
@@ -31,7 +37,7 @@ def open_window(folder, file, *options, **more):
     OPENED.append(window)
     with_panel = window.picture()
     window.key("h")  # pictures without the panel
-    window.until_unlike(with_panel, "H does not hide the panel", bottom=0.12)
+    assert window.settled().difference(with_panel, bottom=0.12) > CHANGED, "H does not hide the panel"
     return window
 
 
@@ -108,6 +114,80 @@ def views_and_split(folder):
     assert w.end() == 0
 
 
+def first_picture_is_the_clouds_alone(folder):
+    make_ball(folder / "ball.vdb")
+    w = Window(PREVIEW, folder, "ball.vdb", size=WITH_PANEL, rest=False)
+    OPENED.append(w)
+    for _ in range(TRIES):  # coarse pictures, then better ones
+        w.until(lambda: w.picture() is not None and w.picture().mean() > 5.0, "no picture")
+        picture = w.picture()
+        # Beneath panel and ball stands the same backdrop on both sides.
+        left, right = (picture.mean(left=a, right=a + 0.25, top=0.985) for a in (0.05, 0.7))
+        assert abs(left - right) < ALIKE, f"the panel left its mark: {left:.1f} against {right:.1f}"
+    assert w.end() == 0
+
+
+def wheel_and_flight(folder):
+    make_ball(folder / "ball.vdb")
+    w = open_window(folder, "ball.vdb")
+    first = w.picture()
+    w.wheel(3)
+    w.until_unlike(first, "the wheel does not zoom")
+    w.wheel(-3)
+    w.until_like(first, "the wheel back does not zoom back")
+    for key in ("w", "s", "d", "a", "e", "q"):
+        w.fly(key, FLIGHT)
+        w.until_unlike(first, f"{key} does not fly")
+        w.key("r")
+        w.until_like(first, "R does not come back")
+    w.key("w", "d")  # without the right button they do nothing
+    w.key("l")
+    w.until_said("look: report")
+    w.key("l")
+    w.until_like(first, "keys fly without the right button")
+    assert w.end() == 0
+
+
+def grid_chooser(folder):
+    make_ball(folder / "five.vdb", "five")
+    w = Window(PREVIEW, folder, "five.vdb", size=WITH_PANEL)
+    OPENED.append(w)
+    first = w.picture()
+
+    def choose(place):
+        w.click(*GRID)
+        w.click(GRID[0], GRID[1] + ENTRY * (place + 1) + ENTRY // 4)
+    choose(3)
+    w.until_said("showing grid 'smoke'")
+    w.until_unlike(first, "the smoke looks like the density", left=BESIDE_PANEL)
+    choose(1)
+    w.until_said("grid 'surface' is a level set")
+    choose(2)  # vel: no density, and not to be chosen
+    w.key("Escape")  # folds the list, and does not end the program
+    w.until_shown()
+    choose(0)
+    w.until_like(first, "the density does not come back", left=BESIDE_PANEL, top=0.25)
+    assert w.end() == 0
+
+
+def a_slider_and_its_undo(folder):
+    make_ball(folder / "ball.vdb")
+    w = Window(PREVIEW, folder, "ball.vdb", size=WITH_PANEL)
+    OPENED.append(w)
+    first = w.picture()
+    cloud = {"left": BESIDE_PANEL, "top": 0.25}
+    for place, what in ((EXPOSURE, "exposure"), (ELEVATION, "elevation")):
+        w.click(*place)
+        w.until_unlike(first, f"a click on the {what} changes nothing", **cloud)
+        w.click(*UNDO)
+        w.until_like(first, f"the button does not undo the {what}", **cloud)
+        w.key("ctrl+y")
+        w.until_unlike(first, f"redo does not bring the {what} back", **cloud)
+        w.key("ctrl+z")
+        w.until_like(first, f"the keys do not undo the {what}", **cloud)
+    assert w.end() == 0
+
+
 def drops(folder):
     make_ball(folder / "ball.vdb")
     make_ball(folder / "small.vdb", "ball", 9)
@@ -163,8 +243,8 @@ def sequence(folder):
     w = open_window(folder, "s_0001.vdb")
     first = w.picture()
     w.key("Right")
+    w.until_unlike(first, "the next frame does not show")
     second = w.settled()
-    assert second.difference(first) > CHANGED, "the next frame does not show"
     w.key("Right")
     w.until_said("s_0003.vdb: error")
     assert w.picture().difference(second) < ALIKE, "the bad frame changed the picture"
@@ -204,8 +284,8 @@ def sizes_and_files(folder):
     assert not (folder / "imgui.ini").exists(), "a file was left behind"
 
 
-CASES = [camera_moves_and_comes_back, sun_turns_and_undo_turns_it_back, views_and_split, drops, reload, sequence,
-         sizes_and_files]
+CASES = [first_picture_is_the_clouds_alone, camera_moves_and_comes_back, wheel_and_flight, sun_turns_and_undo_turns_it_back,
+         views_and_split, grid_chooser, a_slider_and_its_undo, drops, reload, sequence, sizes_and_files]
 
 
 def main():
