@@ -5,12 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <numbers>
 
 #include "bake/choice.h"
 #include "bake/trial.h"
-#include "base/front.h"
 #include "base/progress.h"
 #include "volume/difference.h"
 
@@ -24,6 +22,8 @@ constexpr int kSizeSteps = 5;
 constexpr double kReferenceCutoff = 0.1;  // of the asset's
 constexpr double kCutoffs[] = {0.1, 10.0, 100.0};
 constexpr uint64_t kRays = 10000;
+// Joint settings that are measured: as many as are likeliest to be on a front.
+constexpr size_t kMostJoint = 16;
 
 class CostSweep {
  public:
@@ -44,12 +44,8 @@ class CostSweep {
       measure(sweep, look);
       bar.advance(1);
     }
-    std::vector<CostAndError> costs;
-    for (const CostPoint& p : chart_.points) costs.push_back({double(p.fileBytes), p.depthLargest});
-    chart_.front = paretoFront(costs);
-    // A bake that misses all of the depth somewhere is cheap, and worth nothing.
-    std::erase_if(chart_.front, [&](size_t i) { return costs[i].error >= 1.0; });
-    chart_.knee = kneeOf(costs, chart_.front);
+    measureJoint();
+    chart_.fronts = costFronts(chart_.points);
     return std::move(chart_);
   }
 
@@ -107,6 +103,20 @@ class CostSweep {
     for (const double factor : kCutoffs)
       looks.emplace_back("cutoff", lookOf(finest, asset_.precision, kAllOctaves, factor * asset_.cutoff));
     return looks;
+  }
+
+  void measureJoint() {
+    std::vector<CostPoint> joint = jointSettings(chart_.points);
+    if (joint.size() > kMostJoint) {
+      chart_.leftOut.push_back(std::to_string(joint.size() - kMostJoint) +
+                               " joint settings that are less likely to be worth their cost");
+      joint.resize(kMostJoint);
+    }
+    Progress bar("joint", joint.size(), quiet_);
+    for (const CostPoint& expected : joint) {
+      measure(expected.sweep, expected.look);
+      bar.advance(1);
+    }
   }
 
   void measure(const std::string& sweep, const Asset& look) {

@@ -24,52 +24,80 @@ std::string nameOf(const Asset& look) {
          ", cutoff " + number(look.cutoff);
 }
 
+std::string nameOf(CostKind kind) {
+  return kind == CostKind::file ? "file" : kind == CostKind::seconds ? "seconds" : "memory";
+}
+
+std::string nameOf(CostError error) { return error == CostError::depth ? "depth" : "density"; }
+
+std::string nameOf(const CostFront& front) { return nameOf(front.error) + " by " + nameOf(front.cost); }
+
+/// "depth by file (knee), density by memory": the fronts that a point is on.
+std::string frontsOf(const CostChart& chart, size_t point) {
+  std::string text;
+  for (const CostFront& front : chart.fronts)
+    if (onFront(front.points, point))
+      text += (text.empty() ? "" : ", ") + nameOf(front) +
+              (isKnee(front.points, front.knee, point) ? " (knee)" : "");
+  return text;
+}
+
+bool isMainKnee(const CostChart& chart, size_t point) {
+  return !chart.fronts.empty() && isKnee(chart.fronts.front().points, chart.fronts.front().knee, point);
+}
+
 Table tableOf(const CostChart& chart) {
   Table table;
   table.header = {"sweep",       "voxel_size",    "precision",  "octaves",       "cutoff",
                   "seconds",     "file_bytes",    "grid_bytes", "voxels_active", "density_largest",
-                  "density_rms", "depth_largest", "depth_rms",  "front",         "knee"};
+                  "density_rms", "depth_largest", "depth_rms",  "fronts"};
   for (size_t n = 0; n < chart.points.size(); ++n) {
     const CostPoint& p = chart.points[n];
     table.rows.push_back({p.sweep, number(p.look.voxelSize), precisionOf(p.look), octavesOf(p.look),
                           number(p.look.cutoff), number(p.seconds), std::to_string(p.fileBytes),
                           std::to_string(p.gridBytes), std::to_string(p.voxelsActive),
                           number(p.densityLargest), number(p.densityRms), number(p.depthLargest),
-                          number(p.depthRms), onFront(chart.front, n) ? "1" : "0",
-                          isKnee(chart.front, chart.knee, n) ? "1" : "0"});
+                          number(p.depthRms), frontsOf(chart, n)});
   }
   return table;
 }
 
-/// One kind of error over one cost, a series for each sweep; bars go from the RMS to the largest error.
-template <class Cost>
-ChartPanel panelOf(const CostChart& chart, const std::string& title, const std::string& xLabel, bool depth,
-                   bool withFront, const Cost& costOf) {
-  ChartPanel panel{
-      title,
-      xLabel,
-      depth ? "optical depth: largest error, bar down to RMS" : "density: largest error, bar down to RMS",
-      {}};
+std::string titleOf(const CostChart& chart) {
+  return "Bake of " + chart.asset + (chart.frame ? ", frame " + std::to_string(*chart.frame) : "");
+}
+
+/// The cost as the axis and the page have it: megabytes or seconds.
+double shownCost(const CostPoint& point, CostKind kind) {
+  return costOf(point, kind) / (kind == CostKind::seconds ? 1.0 : kMegabyte);
+}
+
+/// One front with all points, a series for each sweep; bars go from the RMS to the largest error.
+ChartPanel panelOf(const CostChart& chart, const CostFront& front) {
+  const bool depth = front.error == CostError::depth;
+  ChartPanel panel{titleOf(chart) + (depth ? ": optical depth" : ": density"),
+                   front.cost == CostKind::file      ? "file, MB"
+                   : front.cost == CostKind::seconds ? "seconds"
+                                                     : "grid in memory, MB",
+                   "largest error, bar down to RMS",
+                   {},
+                   {}};
   const auto pointOf = [&](const CostPoint& p) {
-    const double largest = depth ? p.depthLargest : p.densityLargest, rms = depth ? p.depthRms : p.densityRms;
-    return ChartPoint{costOf(p), largest, rms, largest};
+    const double largest = errorOf(p, front.error);
+    return ChartPoint{shownCost(p, front.cost), largest, depth ? p.depthRms : p.densityRms, largest};
   };
   for (const CostPoint& p : chart.points) {
     if (panel.series.empty() || panel.series.back().name != p.sweep)
       panel.series.push_back({p.sweep, {}, false});
     panel.series.back().points.push_back(pointOf(p));
   }
-  if (!withFront || chart.front.empty()) return panel;
-  ChartSeries front{"Pareto front", {}, true};
-  for (const size_t i : chart.front) front.points.push_back(pointOf(chart.points[i]));
-  const CostPoint& knee = chart.points[chart.front[chart.knee]];
-  panel.series.push_back(front);
-  panel.series.push_back({"knee: " + nameOf(knee.look), {pointOf(knee)}, true});
+  if (front.points.empty()) return panel;
+  ChartSeries line{"Pareto front", {}, true};
+  for (const size_t i : front.points) line.points.push_back(pointOf(chart.points[i]));
+  const CostPoint& knee = chart.points[front.points[front.knee]];
+  panel.series.push_back(line);
+  panel.series.push_back({"knee", {pointOf(knee)}, true});
+  panel.note = "knee: " + nameOf(knee.look);
   return panel;
-}
-
-std::string titleOf(const CostChart& chart) {
-  return "Bake of " + chart.asset + (chart.frame ? ", frame " + std::to_string(*chart.frame) : "");
 }
 
 std::string pageOf(const CostChart& chart, const std::string& folder, bool drawn) {
@@ -81,18 +109,14 @@ std::string pageOf(const CostChart& chart, const std::string& folder, bool drawn
        << chart.rays << " random rays.</p>\n";
   if (drawn) page << readWhole(folder + "/chart.svg");
   page << "<h2>All bakes</h2><table><tr><th>bake<th>seconds<th>file MB<th>memory MB<th>depth, "
-          "largest<th>RMS<th>density, largest<th>RMS</tr>\n";
+          "largest<th>RMS<th>density, largest<th>RMS<th>on the fronts of</tr>\n";
   for (size_t n = 0; n < chart.points.size(); ++n) {
     const CostPoint& p = chart.points[n];
-    page << (isKnee(chart.front, chart.knee, n) ? "<tr class=\"knee\"><td>" : "<tr><td>")
-         << htmlEscaped(nameOf(p.look))
-         << (isKnee(chart.front, chart.knee, n) ? " (knee)"
-             : onFront(chart.front, n)          ? " (front)"
-                                                : "")
+    page << (isMainKnee(chart, n) ? "<tr class=\"knee\"><td>" : "<tr><td>") << htmlEscaped(nameOf(p.look))
          << "<td>" << number(p.seconds) << "<td>" << number(double(p.fileBytes) / kMegabyte) << "<td>"
          << number(double(p.gridBytes) / kMegabyte) << "<td>" << percent(p.depthLargest) << "<td>"
          << percent(p.depthRms) << "<td>" << percent(p.densityLargest) << "<td>" << percent(p.densityRms)
-         << "</tr>\n";
+         << "<td>" << frontsOf(chart, n) << "</tr>\n";
   }
   page << "</table>\n";
   if (!chart.leftOut.empty()) {
@@ -107,14 +131,8 @@ std::string pageOf(const CostChart& chart, const std::string& folder, bool drawn
 
 std::string writeCostChart(const std::string& folder, const CostChart& chart) {
   writeCsv(folder + "/chart.csv", tableOf(chart));
-  const auto seconds = [](const CostPoint& p) { return p.seconds; };
-  const auto file = [](const CostPoint& p) { return double(p.fileBytes) / kMegabyte; };
-  const auto memory = [](const CostPoint& p) { return double(p.gridBytes) / kMegabyte; };
-  const std::vector<ChartPanel> panels = {
-      panelOf(chart, titleOf(chart), "file, MB", true, true, file),
-      panelOf(chart, "by time", "seconds", true, false, seconds),
-      panelOf(chart, "by memory", "grid in memory, MB", true, false, memory),
-      panelOf(chart, "density", "file, MB", false, false, file)};
+  std::vector<ChartPanel> panels;
+  for (const CostFront& front : chart.fronts) panels.push_back(panelOf(chart, front));
   const std::string sentence = drawChart(panels, folder, "chart");
   writeText(folder + "/index.html", htmlPage(titleOf(chart), pageOf(chart, folder, sentence.empty())));
   return sentence;
@@ -122,11 +140,18 @@ std::string writeCostChart(const std::string& folder, const CostChart& chart) {
 
 std::string costFrontAsText(const CostChart& chart) {
   std::ostringstream out;
-  for (const size_t i : chart.front) {
-    const CostPoint& p = chart.points[i];
-    out << nameOf(p.look) << ": " << number(double(p.fileBytes) / kMegabyte) << " MB, " << number(p.seconds)
-        << " s, optical depth within " << percent(p.depthLargest)
-        << (isKnee(chart.front, chart.knee, i) ? "  <- knee" : "") << '\n';
+  for (size_t n = 0; n < chart.fronts.size(); ++n) {
+    const CostFront& front = chart.fronts[n];
+    for (const size_t i : front.points) {
+      const CostPoint& p = chart.points[i];
+      const bool knee = isKnee(front.points, front.knee, i);
+      if (n == 0)
+        out << nameOf(p.look) << ": " << number(double(p.fileBytes) / kMegabyte) << " MB, "
+            << number(p.seconds) << " s, optical depth within " << percent(p.depthLargest)
+            << (knee ? "  <- knee" : "") << '\n';
+      else if (knee)
+        out << "knee of " << nameOf(front) << ": " << nameOf(p.look) << '\n';
+    }
   }
   return out.str();
 }

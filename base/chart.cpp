@@ -29,7 +29,9 @@ void addPanel(std::ostream& out, const ChartPanel& panel) {
       out << p.x << ' ' << p.y << ' ' << p.low << ' ' << p.high << '\n';
     out << "EOD\n";
   }
-  out << "set title " << gnuplotText(panel.title) << " noenhanced\nset xlabel " << gnuplotText(panel.xLabel)
+  out << "set title " << gnuplotText(panel.title);
+  if (!panel.note.empty()) out << ".\"\\n\"." << gnuplotText(panel.note);
+  out << " noenhanced\nset xlabel " << gnuplotText(panel.xLabel) << " offset 0,0.6"
       << "\nset ylabel " << gnuplotText(panel.yLabel) << "\nplot ";
   for (size_t i = 0; i < panel.series.size(); ++i) {
     const ChartSeries& series = panel.series[i];
@@ -89,14 +91,16 @@ void writeCsv(const std::string& path, const Table& table) {
 
 std::string gnuplotScript(const std::vector<ChartPanel>& panels, const std::string& terminal,
                           const std::string& output) {
-  constexpr int kPanelWidth = 720, kHeight = 560;  // pixels
+  constexpr int kPanelWidth = 640, kPanelHeight = 480;  // pixels
+  const int columns = panels.size() > 1 ? 2 : 1,
+            rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
   std::ostringstream out;
-  out << std::setprecision(9) << "set terminal " << terminal << " size "
-      << kPanelWidth * static_cast<int>(panels.size()) << ',' << kHeight
-      << " background rgb 'white'\nset output " << gnuplotText(output)
-      << "\nset encoding utf8\nset logscale xy\nset grid\nset key below\nset format y '%g'\nset format x "
+  out << std::setprecision(9) << "set terminal " << terminal << " size " << kPanelWidth * columns << ','
+      << kPanelHeight * rows << " background rgb 'white'\nset output " << gnuplotText(output)
+      << "\nset encoding utf8\nset logscale xy\nset grid\nset key below\nset linetype 5 lc rgb "
+         "'#8c564b'\nset format y '%g'\nset format x "
          "'%g'\n"
-      << "set multiplot layout 1," << panels.size() << '\n';
+      << "set multiplot layout " << rows << ',' << columns << '\n';
   for (const ChartPanel& panel : panels) addPanel(out, panel);
   out << "unset multiplot\nset output\n";
   return out.str();

@@ -7,7 +7,7 @@
 
 namespace nephele {
 
-std::vector<size_t> paretoFront(const std::vector<CostAndError>& points) {
+std::vector<size_t> paretoFront(const std::vector<CostAndError>& points, double leastGain) {
   std::vector<size_t> order(points.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
@@ -15,7 +15,7 @@ std::vector<size_t> paretoFront(const std::vector<CostAndError>& points) {
   });
   std::vector<size_t> front;
   for (const size_t i : order)
-    if (front.empty() || points[i].error < points[front.back()].error) front.push_back(i);
+    if (front.empty() || points[i].error < (1.0 - leastGain) * points[front.back()].error) front.push_back(i);
   return front;
 }
 

@@ -19,9 +19,14 @@ namespace {
 constexpr std::string_view kTruth = "reference";
 constexpr double kSecondsPerMinute = 60.0;
 
-/// The scene with the look that has truth.
-Scene physicalScene(const std::string& path) {
+/// The scene with what has truth: of `bounces` 0 the first order alone.
+Scene physicalScene(const std::string& path, const std::optional<int>& bounces) {
   Scene scene = openScene(path, {});
+  if (bounces == 0) {
+    if (scene.octaves.count.value_or(0) > 0)
+      std::cerr << "chart: single scattering is charted without octaves\n";
+    scene.octaves.count = 0;
+  }
   if (scene.look == Look::report)
     std::cerr << "chart: the report look has no truth; the physical look is charted\n";
   scene.look = Look::physical;
@@ -75,7 +80,7 @@ int chartCommand(const ChartOptions& options) {
   if (options.stability) return stabilityCommand(options);
   if (options.file.empty()) throw InputError({}, "chart needs a FILE.vdb to measure on, or --stability");
   for (const std::string& name : options.methods) findMethod(name);
-  const Scene scene = physicalScene(options.scene);
+  const Scene scene = physicalScene(options.scene, options.bounces);
   const BrickVolume bricks = openVolume(options.file, options.grid);
   if (bricks.empty()) throw InputError({options.file}, "an empty grid has nothing to chart");
   openFolder(options.out, "chart.csv");

@@ -76,7 +76,8 @@ ChartPanel panelOf(const SweepResult& result, const std::string& title, const st
   for (const size_t i : result.front) front.points.push_back(pointOf(result.all[i]));
   const Measured& knee = result.all[result.front[result.knee]];
   panel.series.push_back(front);
-  panel.series.push_back({"knee: " + result.settings[knee.setting].name, {pointOf(knee)}, true});
+  panel.series.push_back({"knee", {pointOf(knee)}, true});
+  panel.note = "knee: " + result.settings[knee.setting].name;
   return panel;
 }
 

@@ -85,6 +85,14 @@ Picture enlarged(const Picture& small, int times) {
   return large;
 }
 
+/// A picture of one sample a pixel that nothing is taken of: shaders are built by then. The reference has
+/// none.
+void warmUp(Method& method, const ViewedScene& view, const SweepOptions& options, const Setting& setting) {
+  if (setting.method == kTruth) return;
+  PictureCost cost;
+  method.render(view, requestOf(options, 1, 0, setting.coarser), cost);
+}
+
 /// As many samples as fit into `seconds`, by the cost of a first picture.
 Picture truthWithin(Methods& methods, const ViewedScene& view, const SweepOptions& options, double seconds) {
   // Another seed than the settings have: the reference, as a setting, is held against a picture of its own
@@ -192,11 +200,11 @@ SweepResult sweep(const BrickVolume& bricks, const ViewedScene& given, const Swe
       }
       const auto before = Clock::now();
       Method& method = made.at(setting.method);
+      const ViewedScene set = withSetting(view.view, setting);
+      warmUp(method, set, options, setting);
       PictureCost cost;
-      const Picture picture =
-          enlarged(method.render(withSetting(view.view, setting),
-                                 requestOf(options, setting.samples, 0, setting.coarser), cost),
-                   setting.coarser);
+      const Picture picture = enlarged(
+          method.render(set, requestOf(options, setting.samples, 0, setting.coarser), cost), setting.coarser);
       const double pixels = 1.0 / (setting.coarser * setting.coarser);  // rendered, a pixel of the picture
       Measured measured{s, view.name, cost.milliseconds, pixels * cost.densitySamplesPerPixel,
                         compareWithHalves(picture, truth)};
@@ -208,7 +216,7 @@ SweepResult sweep(const BrickVolume& bricks, const ViewedScene& given, const Swe
     ++viewsDone;
   }
   result.all = overViews(result.single, result.settings.size(), viewsDone);
-  result.front = paretoFront(result.all);
+  result.front = paretoFront(costsOf(result.all), kWorthNaming);
   result.knee = kneeOf(result.all, result.front);
   return result;
 }

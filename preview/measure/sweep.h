@@ -77,7 +77,7 @@ std::vector<SweepView> viewsFor(const ViewedScene& view);
 
 /// Truth is traced for each view within a fifth of the time, with two independent halves. Settings that would
 /// take more than what is left are left out and named. Time is each picture's own (PictureCost), without a
-/// driver's start.
+/// driver's start and with shaders built and the view's light cache filled.
 SweepResult sweep(const BrickVolume& bricks, const ViewedScene& view, const SweepOptions& options);
 
 /// Indices of the points that no other beats in both time and error, by time; and of the knee among them: the

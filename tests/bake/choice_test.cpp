@@ -141,20 +141,56 @@ TEST_F(ChoiceTest, RefusesWhatNeverEnds) {
 }
 
 TEST_F(ChoiceTest, AChartHasErrorsThatGrowWithTheVoxels) {
-  const Pipeline pipeline = recipe(kNoise, "voxel_size: 0.05");
+  const Pipeline pipeline = recipe(kNoise, "voxel_size: 0.07");
   const CostChart chart = measureCosts(pipeline, pipeline.assets[0], folder(), true);
   ASSERT_GE(chart.points.size(), 10u);
-  EXPECT_EQ(chart.referenceSize, 0.025);
+  EXPECT_EQ(chart.referenceSize, 0.035);
   const CostPoint& finest = chart.points[0];
   const CostPoint& coarsest = chart.points[4];
   ASSERT_EQ(coarsest.sweep, "voxel size");
   EXPECT_GT(coarsest.depthRms, 2.0 * finest.depthRms);
   EXPECT_LT(coarsest.voxelsActive, finest.voxelsActive / 32);
   EXPECT_LT(coarsest.fileBytes, finest.fileBytes);
-  EXPECT_FALSE(chart.front.empty());
+  ASSERT_EQ(chart.fronts.size(), 6u);
+  for (const CostFront& front : chart.fronts) EXPECT_FALSE(front.points.empty());
   writeCostChart(folder(), chart);
   for (const char* name : {"chart.csv", "index.html"})
     EXPECT_GT(std::filesystem::file_size(scratch_.file(name)), 500u) << name;
+}
+
+CostPoint pointOf(const std::string& sweep, double size, int octaves, uint64_t bytes, double depth) {
+  CostPoint point;
+  point.sweep = sweep;
+  point.look.voxelSize = size;
+  point.look.mostOctaves = octaves;
+  point.fileBytes = point.gridBytes = bytes;
+  point.seconds = double(bytes);
+  point.depthLargest = point.densityLargest = depth;
+  return point;
+}
+
+TEST(CostFronts, JointSettingsAreThoseThatMayBeWorthTheirCost) {
+  // Two octaves cost half and err by as good as nothing more; one octave errs by a half.
+  const std::vector<CostPoint> points = {
+      pointOf("voxel size", 1.0, kAllOctaves, 1000, 0.01), pointOf("voxel size", 2.0, kAllOctaves, 100, 0.1),
+      pointOf("octaves", 1.0, 2, 500, 0.011), pointOf("octaves", 1.0, 1, 400, 0.5)};
+  const std::vector<CostPoint> joint = jointSettings(points);
+  ASSERT_FALSE(joint.empty());
+  EXPECT_EQ(joint[0].look.voxelSize, 2.0);
+  EXPECT_EQ(joint[0].look.mostOctaves, 2);
+  EXPECT_EQ(joint[0].fileBytes, 50u);
+  EXPECT_NEAR(joint[0].depthLargest, 0.101, 1e-12);
+}
+
+TEST(CostFronts, LeaveOutWhatIsHardlyBetterAndWhatMissesAll) {
+  const std::vector<CostPoint> points = {
+      pointOf("voxel size", 1.0, kAllOctaves, 1000, 0.01), pointOf("voxel size", 2.0, kAllOctaves, 100, 0.1),
+      pointOf("precision", 2.0, kAllOctaves, 200, 0.0999), pointOf("cutoff", 1.0, kAllOctaves, 10, 1.0)};
+  const std::vector<CostFront> fronts = costFronts(points);
+  ASSERT_EQ(fronts.size(), 6u);
+  EXPECT_EQ(fronts[0].points, (std::vector<size_t>{1, 0}));
+  EXPECT_EQ(int(fronts[0].error), int(CostError::depth));
+  EXPECT_EQ(int(fronts[0].cost), int(CostKind::file));
 }
 
 }  // namespace
