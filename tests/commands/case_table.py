@@ -259,6 +259,8 @@ PREVIEW = [
     says("preview chart good.vdb --out charts --methods mrach", 2, "did you mean 'march'?"),
     says("preview chart good.vdb --out a_file/below", 1, "a_file"),
     prints("preview chart good.vdb --out charts --methods reference --minutes 0.02 --size 16x9", "reference, 256 spp"),
+    says("preview chart good.vdb --out charts --methods reference --minutes 0.02 --size 16x9 --scene lit.yaml --bounces 0", 0,
+         "single scattering is charted without octaves", files={"lit.yaml": "octaves: { count: 2 }\n"}),
     says("preview compare nowhere.exr nowhere.exr", 2, "nowhere.exr: error: no such file"),
     says("preview compare text.vdb text.vdb", 2, "text.vdb: error:"),
     says("preview good.vdb --render a_file/picture.exr --size 16x9", 1, "a_file"),

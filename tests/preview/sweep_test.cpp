@@ -160,6 +160,30 @@ TEST(Sweep, SmallerPicturesAreEnlargedAndHeldAgainstWhatTheyStandFor) {
   EXPECT_EQ(smaller, 2u);
 }
 
+/// A method whose first picture of each camera takes long.
+struct Cold : Slope {
+  Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
+    Picture picture = Slope::render(view, request, cost);
+    cost.milliseconds = view.camera.position == last ? 1.0 : 1000.0;
+    last = view.camera.position;
+    return picture;
+  }
+  glm::dvec3 last{1e9};
+};
+
+TEST(Sweep, PicturesAreTimedWarm) {
+  SweepOptions options;
+  options.methods = {
+      {"march", "", [](const MethodOptions&) -> std::unique_ptr<Method> { return std::make_unique<Cold>(); }},
+      {"reference", "",
+       [](const MethodOptions&) -> std::unique_ptr<Method> { return std::make_unique<Slope>(); }}};
+  options.chartsTruth = false;
+  options.quiet = true;
+  const SweepResult result = sweep(BrickVolume{}, ViewedScene{}, options);
+  ASSERT_FALSE(result.single.empty());
+  for (const Measured& m : result.single) EXPECT_EQ(m.milliseconds, 1.0) << m.view;
+}
+
 TEST(Figures, HaveTheirDigits) {
   EXPECT_EQ(number(1.0 / 3.0), "0.33333");
   EXPECT_EQ(number(1.0 / 3.0, 2), "0.33");
@@ -177,6 +201,14 @@ TEST(Chart, TitlesCannotEndTheScriptsText) {
       gnuplotScript({{"it's; system 'x'\n!", "x", "y", {{"s", {{1, 2, 1, 3}}, false}}}}, "svg", "o.svg");
   EXPECT_NE(script.find("set title 'it''s; system ''x'' !' noenhanced"), std::string::npos);
   EXPECT_NE(script.find("1 2 1 3"), std::string::npos);
+}
+
+TEST(Chart, PanelsStandTwoInARowWithTheirNotesBelowTheirTitles) {
+  ChartPanel panel{"title", "x", "y", {{"s", {{1, 2, 1, 3}}, false}}, "it's a note"};
+  const std::string script = gnuplotScript({panel, panel, panel}, "svg", "o.svg");
+  EXPECT_NE(script.find("set title 'title'.\"\\n\".'it''s a note' noenhanced"), std::string::npos) << script;
+  EXPECT_NE(script.find("size 1280,960"), std::string::npos) << script;
+  EXPECT_NE(script.find("layout 2,2"), std::string::npos) << script;
 }
 
 }  // namespace
