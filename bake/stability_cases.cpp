@@ -14,7 +14,6 @@ using glm::dvec3;
 
 // Powers of two, so that clouds at different places may lie on one lattice exactly.
 constexpr double kVoxel = 0.0625;
-constexpr double kCell = 8.0 * kVoxel;  // of the noise's first octave
 constexpr double kRadius = 12.0;        // voxels
 constexpr double kPi = std::numbers::pi;
 

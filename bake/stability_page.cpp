@@ -148,7 +148,7 @@ std::string bakeStabilityPage(const BakeStability& result) {
          "  Trusted up to "
       << shortPercent(kTrustedIntegratorError)
       << "; beyond that a place is wrong, yet no farther away than the forces can bring a particle.\n\n"
-         "![map](images/stability_bake.png)\n";
+         "![map](stability.png)\n";
   for (const TrustMap& map : trustMapsOf(result)) out << markdownOf(map);
   addRefusals(out, result);
   return out.str();

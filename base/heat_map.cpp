@@ -31,7 +31,7 @@ std::string colourOf(double value, const HeatMap& map) {
 
 // Pixels: of a row, of a title with what stands beside it, of a character in names and in cells, of what
 // stays free beside them.
-constexpr int kRow = 34, kHead = 46, kNameCharacter = 8, kCellCharacter = 6, kFree = 10;
+constexpr int kRow = 34, kHead = 46, kNameCharacter = 9, kCellCharacter = 6, kFree = 10;
 
 struct Layout {
   int left = 0, cell = 0, width = 0, height = 0;  // pixels; cells are equally wide in all maps
