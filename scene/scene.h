@@ -166,6 +166,8 @@ struct MarchSettings {
   double cacheDepth = 0.2;        // optical depth of a voxel of mean density above which suns and points are
                                   // marched for all the same, since the volume is then too coarse; >= 0
   double giveUp = 1e-4;           // transmittance below which a ray ends, in (0, 0.1]
+  // No key of files; moving pictures set it: light comes from that volume however thick a voxel is.
+  bool alwaysCached = false;
   bool checkSkips = false;        // reads what was skipped as well, and counts what that would have changed
   AtlasPrecision precision = AtlasPrecision::automatic;
   double levelPixels = 1.0;  // voxels that cover at most so many come from coarser levels; 0: none do

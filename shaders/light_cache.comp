@@ -11,7 +11,11 @@ layout(std430, binding = 2) buffer Cost { uint densitiesRead; uint checked; uint
 layout(binding = 0, r32f) writeonly uniform image3D columns;
 layout(binding = 1, rgba32f) writeonly uniform image3D skyImage;
 #else
+#if NPH_COLUMN_BYTES
+layout(binding = 0, r8) writeonly uniform image3D columns;
+#else
 layout(binding = 0, r16f) writeonly uniform image3D columns;
+#endif
 layout(binding = 1, rgba16f) writeonly uniform image3D skyImage;
 #endif
 layout(location = 0) uniform uint firstBlock;

@@ -250,6 +250,7 @@ void Desk::writeStats() const {
   if (options_.render.stats.empty()) return;
   const GlCounts counts = glCounts();
   const LaneStats lane = viewer_.stats(Side::edited);
+  const std::optional<Texel> texel = viewer_.texel();
   const nlohmann::ordered_json stats{{"pictures_begun", restarts_},
                                      {"presses_shown", pressesShown_},
                                      {"live_frame", live_ ? live_->frame() : 0},
@@ -259,6 +260,8 @@ void Desk::writeStats() const {
                                      {"noise", lane.noise},
                                      {"noise_known", statsKnown_},
                                      {"gpu_bytes", viewer_.gpuBytes()},
+                                     {"gpu_volume_bytes", viewer_.volumeBytes()},
+                                     {"gpu_texel", texel ? nameOf(*texel) : ""},
                                      {"moving_frames", pace_.frames()},
                                      {"moving_per_second", pace_.perSecond()},
                                      {"moving_median_ms", 1e3 * pace_.medianSeconds()},

@@ -36,13 +36,13 @@ void Viewer::setVolume(std::shared_ptr<const BrickVolume> bricks) {
   std::optional<BrickAtlas> live = std::exchange(live_, std::nullopt);
   std::swap(bricks_, bricks);
   try {
-    seen_.emplace(*bricks_, filter_, limits_);
+    seen_.emplace(*bricks_, filter_, limits_, true);
     if (lanes_[0]) toolsFor(*lanes_[0], false);
   } catch (const std::exception&) {
     std::swap(bricks_, bricks);
     seen_.reset();
     if (live) live_.emplace(std::move(*live));
-    if (bricks_) seen_.emplace(*bricks_, filter_, limits_);
+    if (bricks_) seen_.emplace(*bricks_, filter_, limits_, true);
     throw;
   }
 }
@@ -180,9 +180,14 @@ LaneStats Viewer::stats(Side side) const {
   return lane ? lane->stats() : LaneStats{};
 }
 
-uint64_t Viewer::gpuBytes() const {
+uint64_t Viewer::volumeBytes() const {
   uint64_t bytes = (seen_ ? seen_->gpuBytes() : 0) + (live_ ? live_->gpuBytes() : 0);
   for (const auto& pass : passes_) bytes += pass ? pass->gpuBytes() : 0;
+  return bytes;
+}
+
+uint64_t Viewer::gpuBytes() const {
+  uint64_t bytes = volumeBytes();
   for (const auto& lane : lanes_) bytes += lane ? lane->gpuBytes() : 0;
   return bytes;
 }

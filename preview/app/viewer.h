@@ -65,6 +65,11 @@ class Viewer {
   LaneStats stats(Side side) const;
   /// Bricks, index, pictures and parameters.
   uint64_t gpuBytes() const;
+  /// Without the pictures: bricks, index, light caches and what else marching takes.
+  uint64_t volumeBytes() const;
+  /// What bricks of the file are kept in for the edited side; nullopt before its first picture and for live
+  /// ones.
+  std::optional<Texel> texel() const { return seen_ ? seen_->texelOf(0) : std::nullopt; }
 
  private:
   MarchPass& passFor(View view);

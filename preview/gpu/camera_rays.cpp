@@ -128,9 +128,10 @@ void setWalk(shared::MarchParameters& p, const MarchSettings& march, const Brick
   // mean.
   constexpr float kMixedBy = 0.5f;
   const float sigmaMax = std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z));
-  if (voxelDepth(bricks, double{sigmaMax}) <= march.cacheDepth)
-    p.cache = vec4(1.0f, kMixedBy * sigmaMax, static_cast<float>(march.cacheNearVoxels),
-                   static_cast<float>(march.cacheNearSteps));
+  const bool good = voxelDepth(bricks, double{sigmaMax}) <= march.cacheDepth;
+  if (good || march.alwaysCached)
+    p.cache = vec4(good ? shared::kColumnsInHalves : shared::kColumnsInBytes, kMixedBy * sigmaMax,
+                   static_cast<float>(march.cacheNearVoxels), static_cast<float>(march.cacheNearSteps));
   constexpr float kGrowth = 1.2f, kSkyGrowth = 1.5f;
   p.cacheSteps = vec4(static_cast<float>(0.5 * march.cacheVoxels), kGrowth,
                       static_cast<float>(0.5 * march.skyCacheVoxels), kSkyGrowth);

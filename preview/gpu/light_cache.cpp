@@ -23,6 +23,19 @@ constexpr int kSky = -1;
 constexpr double kPieceSeconds = 0.02;
 constexpr uint32_t kFirstPieceBlocks = 64;
 
+struct TexelFormat {
+  GLenum name;
+  uint64_t bytes;  // of a texel
+};
+/// `kind` as MarchParameters::cache.x.
+TexelFormat columnFormat(bool floats, float kind) {
+  if (floats) return {GL_R32F, 4};
+  return kind == shared::kColumnsInBytes ? TexelFormat{GL_R8, 1} : TexelFormat{GL_R16F, 2};
+}
+TexelFormat skyFormat(bool floats) {
+  return floats ? TexelFormat{GL_RGBA32F, 16} : TexelFormat{GL_RGBA16F, 8};
+}
+
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -65,11 +78,13 @@ LightCache::LightCache(Filter filter, const std::vector<TextChange>& changes)
 
 const GlProgram& LightCache::programFor(const MarchParameters& parameters) {
   const auto flag = [](const char* name, bool on) { return std::string(name) + (on ? " true" : " false"); };
-  const std::vector<std::string> defines = {floats_ ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
-                                            floats_ ? "NPH_CACHE_FLOAT 1" : "NPH_CACHE_FLOAT 0",
-                                            flag("NPH_SCALED", parameters.counts.z != 0),
-                                            flag("NPH_LEVELS", parameters.cacheShape.w != 0),
-                                            parameters.blockCount.w != 0 ? "NPH_CHECK 1" : "NPH_CHECK 0"};
+  const std::vector<std::string> defines = {
+      floats_ ? "NPH_FILTER_EXACT 1" : "NPH_FILTER_EXACT 0",
+      floats_ ? "NPH_CACHE_FLOAT 1" : "NPH_CACHE_FLOAT 0",
+      columnKind_ == shared::kColumnsInBytes ? "NPH_COLUMN_BYTES 1" : "NPH_COLUMN_BYTES 0",
+      flag("NPH_SCALED", parameters.counts.z != 0),
+      flag("NPH_LEVELS", parameters.cacheShape.w != 0),
+      parameters.blockCount.w != 0 ? "NPH_CHECK 1" : "NPH_CHECK 0"};
   GlProgram& program = programs_[defines];
   if (program.name() == 0) program = buildComputeProgram("light_cache.comp", defines, changes_);
   return program;
@@ -82,7 +97,8 @@ uint64_t LightCache::blockBytes(Filter filter, const MarchParameters& parameters
   const uint64_t columns = parameters.cache.x > 0.0f
                                ? cube(parameters.cacheShape.x) * static_cast<uint64_t>(parameters.counts.x)
                                : 0;
-  return kIndexBytes + channelBytes * (columns + kSkyChannels * cube(parameters.cacheShape.y));
+  return kIndexBytes + columnFormat(filter == Filter::exact, parameters.cache.x).bytes * columns +
+         channelBytes * kSkyChannels * cube(parameters.cacheShape.y);
 }
 
 void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameters) {
@@ -97,26 +113,23 @@ void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameter
   glNamedBufferStorage(blocks_.name(), static_cast<GLsizeiptr>(listBytes),
                        blocks.empty() ? nullptr : blocks.data(), 0);
   gpuBytes_ += listBytes;
-  const uint64_t channelBytes = floats_ ? sizeof(float) : sizeof(float) / 2;
-  const auto make = [&](int samples, int layers, GLenum format, uint64_t texelBytes) {
+  const auto make = [&](int samples, int layers, const TexelFormat& format, GLenum channels) {
     GlTexture texture = makeTexture(GL_TEXTURE_3D);
     const glm::ivec3 size = layout.blockPlaces * samples * glm::ivec3(1, 1, layers);
-    glTextureStorage3D(texture.name(), 1, format, size.x, size.y, size.z);
+    glTextureStorage3D(texture.name(), 1, format.name, size.x, size.y, size.z);
     setVolumeFilter(texture.name(), atlas.filter());
-    glClearTexImage(texture.name(), 0, texelBytes == channelBytes ? GL_RED : GL_RGBA, GL_FLOAT, nullptr);
-    gpuBytes_ += texelBytes * static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) *
+    glClearTexImage(texture.name(), 0, channels, GL_FLOAT, nullptr);
+    gpuBytes_ += format.bytes * static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) *
                  static_cast<uint64_t>(size.z);
     return texture;
   };
-  constexpr uint64_t kChannels = 4;
   constexpr int kSkyHalves = 2, kUnused = 2;  // samples along the edge of what is bound and never read
   const bool columns = parameters.cache.x > 0.0f && parameters.counts.x > 0;
-  hasColumns_ = columns;
+  columnKind_ = columns ? parameters.cache.x : 0.0f;
   columns_ = make(columns ? parameters.cacheShape.x : kUnused, columns ? parameters.counts.x : 1,
-                  floats_ ? GL_R32F : GL_R16F, channelBytes);
+                  columnFormat(floats_, columnKind_), GL_RED);
   const bool sky = parameters.cacheShape.y > 0;
-  sky_ = make(sky ? parameters.cacheShape.y : kUnused, kSkyHalves, floats_ ? GL_RGBA32F : GL_RGBA16F,
-              kChannels * channelBytes);
+  sky_ = make(sky ? parameters.cacheShape.y : kUnused, kSkyHalves, skyFormat(floats_), GL_RGBA);
   checkGl("making the light cache");
 }
 
@@ -144,8 +157,8 @@ void LightCache::fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kBlocksBinding, blocks_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kCostBinding, cost_.name());
   glBindImageTexture(kColumnsImage, columns_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
-                     floats_ ? GL_R32F : GL_R16F);
-  glBindImageTexture(kSkyImage, sky_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, floats_ ? GL_RGBA32F : GL_RGBA16F);
+                     columnFormat(floats_, columnKind_).name);
+  glBindImageTexture(kSkyImage, sky_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, skyFormat(floats_).name);
   glUniform1ui(kFirstBlockLocation, task.nextBlock);
   glUniform1i(kLightLocation, task.light);
   const int samples = task.light == kSky ? known_->cacheShape.y : known_->cacheShape.x;
@@ -167,7 +180,8 @@ MarchParameters LightCache::knownAfter(const MarchParameters& parameters) const 
 
 bool LightCache::plan(const BrickAtlas& atlas, const MarchParameters& parameters) {
   // Columns that were asked for once stay: between moving and resting pictures the shape does not change.
-  const bool lacksColumns = parameters.cache.x > 0.0f && parameters.counts.x > 0 && !hasColumns_;
+  const bool lacksColumns =
+      parameters.cache.x > 0.0f && parameters.counts.x > 0 && columnKind_ != parameters.cache.x;
   const bool anew =
       atlasSerial_ != atlas.serial() || !known_ || lacksColumns || !sameShape(*known_, parameters);
   if (anew) {

@@ -23,10 +23,11 @@ SkipCheck takeSkipCheck(const GlBuffer& counts, GLintptr offset);
 
 /// Textures that hold the samples of shaders/shared/light_cache_fill.glsl and say where each block lies.
 /// Columns are kept as 1/(1 + κ column), κ being MarchParameters::cache.y; the sky's samples depend on the
-/// medium and its phase function as well.
+/// medium and its phase function as well. What rests keeps columns in halves. Where pictures at rest are
+/// marched and moving ones alone ask for columns, they are kept in bytes.
 class LightCache {
  public:
-  /// Read by the exact filter its texels are floats, else halves.
+  /// Read by the exact filter its texels are floats.
   explicit LightCache(Filter filter, const std::vector<TextChange>& changes = {});
 
   /// Makes it right for an atlas and parameters, which are bound to uniform block 0, by filling what differs
@@ -71,7 +72,7 @@ class LightCache {
   GlTexture blockIndex_, columns_, sky_;
   GlBuffer blocks_, cost_;
   uint32_t blockTotal_ = 0;
-  bool hasColumns_ = false;  // or columns_ is bound and never read
+  float columnKind_ = 0.0f;  // as MarchParameters::cache.x; 0: columns_ is bound and never read
   bool bare_ = false;        // it holds nothing yet that could be shown
   uint64_t gpuBytes_ = 0;
   uint64_t atlasSerial_ = 0, atlasContents_ = 0;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 
 #include "scene/scene.h"
 
@@ -21,7 +20,7 @@ inline MarchSettings movingMarch(MarchSettings march) {
   march.shadowStepVoxels *= factor;
   march.cacheNearVoxels = 0.0;
   march.cacheNearSteps = 0;
-  march.cacheDepth = std::numeric_limits<double>::max();
+  march.alwaysCached = true;
   march.giveUp = std::max(march.giveUp, kGiveUp);
   march.adaptive = true;
   return march;

@@ -7,6 +7,7 @@
 #include "preview/gpu/camera_rays.h"
 #include "preview/gpu/film.h"
 #include "preview/gpu/light_cache.h"
+#include "preview/gpu/moving.h"
 
 namespace nephele {
 
@@ -46,11 +47,16 @@ std::shared_ptr<const BrickAtlas> SeenVolume::make(const ViewedScene& view, int 
   options.limitTexels = volumeTextureLimit();
   if (limits_.texels > 0) options.limitTexels = std::min(options.limitTexels, limits_.texels);
   options.resolution = resolutionOf(view.camera, bricks_, height, view.scene.march.levelPixels);
+  ViewedScene counted = view;
+  if (moves_)
+    counted.scene.march = movingMarch(counted.scene.march);  // asks for all that one at rest asks for
   options.blockBytes =
-      LightCache::blockBytes(filter_, marchParameters(view, bricks_, width, height, 0, false));
+      LightCache::blockBytes(filter_, marchParameters(counted, bricks_, width, height, 0, false));
   if (!heat_) heat_ = atlasOfTemperatures(bricks_, filter_);
   if (limits_.bytes > 0) {
-    const uint64_t taken = Film::bytesFor(width, height) + (heat_ ? heat_->gpuBytes() : 0);
+    // A moving picture takes one more at most: of all pixels, or a quarter of them twice, sharpened.
+    const uint64_t films = (moves_ ? 2 : 1) * Film::bytesFor(width, height);
+    const uint64_t taken = films + (heat_ ? heat_->gpuBytes() : 0);
     if (taken >= limits_.bytes)
       throw InputError({}, "--vram: the picture's " + std::to_string(taken) +
                                " bytes (and its temperatures') leave none for the bricks");

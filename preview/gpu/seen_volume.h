@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "preview/gpu/brick_atlas.h"
 #include "preview/viewed_scene.h"
@@ -25,9 +26,10 @@ class SeenVolume {
  public:
   static constexpr size_t kPictures = 2;
 
-  /// The bricks must outlive it. Uploads nothing yet.
-  SeenVolume(const BrickVolume& bricks, Filter filter, const GpuLimits& limits = {})
-      : bricks_(bricks), levels_(bricks), filter_(filter), limits_(limits) {}
+  /// The bricks must outlive it. Uploads nothing yet. `moves`: memory is kept for pictures that move
+  /// (gpu/moving.h) beside those at rest.
+  SeenVolume(const BrickVolume& bricks, Filter filter, const GpuLimits& limits = {}, bool moves = false)
+      : bricks_(bricks), levels_(bricks), filter_(filter), limits_(limits), moves_(moves) {}
 
   /// The atlas for picture `which`, of width × height pixels; made where none is, or none that shows what
   /// this view can tell apart. `moving`: any that is there will do. Throws as BrickAtlas does, and InputError
@@ -35,6 +37,10 @@ class SeenVolume {
   const BrickAtlas& atlasFor(size_t which, const ViewedScene& view, int width, int height, bool moving);
   void forget(size_t which) { kept_[which] = {}; }
   uint64_t gpuBytes() const;
+  /// nullopt where there is no atlas for that picture yet.
+  std::optional<Texel> texelOf(size_t which) const {
+    return kept_[which].atlas ? std::optional(kept_[which].atlas->layout().texel) : std::nullopt;
+  }
 
  private:
   struct Kept {
@@ -49,6 +55,7 @@ class SeenVolume {
   BrickLevels levels_;
   Filter filter_;
   GpuLimits limits_;
+  bool moves_;
   std::shared_ptr<const BrickAtlas> heat_;
   std::array<Kept, kPictures> kept_;
 };

@@ -6,6 +6,10 @@ NPH_CONST int kLightSun = 0;
 NPH_CONST int kLightPoint = 1;
 NPH_CONST int kBlackbodyNodes = 128;
 
+// What the light cache keeps columns in, in params.cache.x; 0: none are asked for.
+NPH_CONST float kColumnsInHalves = 1.0f;
+NPH_CONST float kColumnsInBytes = 2.0f;
+
 // Kinds of environment, in params.skyUp.w.
 NPH_CONST int kSkyNone = 0;
 NPH_CONST int kSkyConstant = 1;
@@ -56,7 +60,7 @@ struct MarchParameters {
   ivec4 skySize;     // x, y: texels of a map
   vec4 walk;         // x: way into the next brick, voxels, that rounding may take. y: the volume's maximum. z, w: optical
                      // depth of a step, of its variation over the brick, below which steps grow; z = 0: fixed steps
-  vec4 cache;        // x: 1 where columns come from the light cache. y: what one stands for there, density · world units.
+  vec4 cache;        // x: kColumns… where columns come from the light cache, else 0. y: what one stands for there, density · world units.
                      // z, w: way marched towards a light before the cache is asked, voxels, and its steps
   vec4 cacheSteps;   // first step, voxels, and growth of those that fill the cache: x, y for columns, z, w for the sky
   ivec4 cacheShape;  // x: samples along a block's edge, columns. y: the same, sky; 0: no sky there. z: texels along z a light.

@@ -2,6 +2,7 @@
 // that memory keeps to its limits, and that cost follows what is seen.
 #include <gtest/gtest.h>
 
+#include "preview/gpu/moving.h"
 #include "preview/gpu/seen_volume.h"
 #include "preview/gpu/sub_pixels.h"
 #include "preview/measure/compare.h"
@@ -179,6 +180,54 @@ TEST(GlLevels, MemoryKeepsToItsLimit) {
   EXPECT_LT(error.relativeRmse, 0.2);
   SeenVolume none(bricks, Filter::hardware, {1000, 0});
   EXPECT_THROW(none.atlasFor(0, view, kLarge, kLarge, false), InputError);
+}
+
+/// So dense that pictures at rest march for their light.
+ViewedScene denseView() {
+  ViewedScene view = viewFrom(3.0);
+  view.medium.sigmaS = {300.0, 300.0, 300.0};
+  return view;
+}
+
+TEST(GlLevels, MemoryKeepsToItsLimitWhileMoving) {
+  needContext();
+  const BrickVolume bricks = cloudOf(192);
+  const ViewedScene view = denseView();
+  ViewedScene moving = view;
+  moving.scene.march = movingMarch(moving.scene.march);
+  constexpr int kLarge = 512;
+  const auto bytesUnder = [&](uint64_t limit, bool moves) {
+    SeenVolume seen(bricks, Filter::hardware, {limit, 0}, moves);
+    MarchPass pass(Filter::hardware);
+    const BrickAtlas& atlas = seen.atlasFor(0, view, kLarge, kLarge, false);
+    if (moves) render(pass, bricks, atlas, moving, 1);
+    render(pass, bricks, atlas, view, 1);
+    return seen.gpuBytes() + pass.gpuBytes();
+  };
+  const uint64_t resting = bytesUnder(0, false), films = 2 * Film::bytesFor(kLarge, kLarge);
+  EXPECT_GT(bytesUnder(0, true), resting) << "there was nothing to count";
+  EXPECT_LE(bytesUnder(films + resting, true), resting);
+}
+
+TEST(GlLevels, ColumnsInBytesDifferLittleFromHalves) {
+  needContext();
+  const BrickVolume bricks = cloudOf(96);
+  const BrickAtlas atlas(bricks, Filter::hardware, Texel::r16f);
+  ViewedScene bytes = denseView(), halves = bytes;
+  bytes.scene.octaves.count = halves.scene.octaves.count = 5;  // which see deeper
+  bytes.scene.march = movingMarch(bytes.scene.march);
+  halves.scene.march = bytes.scene.march;
+  halves.scene.march.cacheDepth = 1e3;  // the cache is good enough for all
+  MarchPass inBytes(Filter::hardware), inHalves(Filter::hardware);
+  const Picture a = render(inBytes, bricks, atlas, bytes).film.picture;
+  const Picture b = render(inHalves, bricks, atlas, halves).film.picture;
+  const Comparison error = comparePictures(a, "bytes", b, "halves");
+  std::printf("columns in bytes: relative RMSE %.3g, bias %.3g, %.3g of the pass's memory\n",
+              error.relativeRmse, error.bias,
+              static_cast<double>(inBytes.gpuBytes()) / static_cast<double>(inHalves.gpuBytes()));
+  EXPECT_LT(inBytes.gpuBytes(), inHalves.gpuBytes());
+  EXPECT_LT(error.relativeRmse, 0.01);
+  EXPECT_LT(std::abs(error.bias), 0.002);
 }
 
 TEST(GlLevels, AOneInAHundredGridTakesAFewPercentOfItsDenseTexture) {
