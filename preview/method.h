@@ -49,6 +49,7 @@ struct PictureCost {
   double milliseconds = 0.0;            // from the first draw to the last pixel read back
   double millisecondsPreparing = 0.0;   // of these, what does not grow with pixels and samples
   double densitySamplesPerPixel = 0.0;  // densities read for the whole picture / pixels
+  double densitiesPreparing = 0.0;      // of these, all in all, read whatever the pixels and samples
   uint64_t gpuBytes = 0;                // bricks, index, light cache, picture, parameters
   uint64_t volumeBytes = 0;             // the same without the picture
   std::string texel;                    // of the atlas: "r8", "r16f", "r32f"; empty where there is none

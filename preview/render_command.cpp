@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -159,7 +160,7 @@ class Sequence {
   bool isReference() const { return row_.name == kReferenceMethod; }
   bool chooses() const { return options_.error > 0.0 && !isReference(); }
 
-  /// A picture that errs by no more than --error asks: the cheapest way that is expected to, and a dearer one
+  /// A picture that errs by no more than --error asks: the cheapest way that is expected to, and the next one
   /// where the picture then measures worse.
   Picture renderWithin(const BrickVolume& bricks, PictureCost& cost) {
     requireTruth(*view_);
@@ -167,11 +168,11 @@ class Sequence {
     truth_->setVolume(bricks);
     ErrorReport report;
     auto start = Clock::now();
-    ErrorSearch search(*method_, *truth_, *view_, request(), options_.error);
+    ErrorSearch search(*method_, *truth_, *view_, request());
     report.stride = search.stride();
     report.bounces = bouncesOfTruth(*view_, options_.bounces);
-    for (double aim = options_.error;;) {
-      report.pick = search.pick(aim);
+    for (size_t from = 0;; from = report.pick.rung + 1) {
+      report.pick = search.pick(options_.error, from);
       report.waysMeasured = search.measuredRungs();
       report.secondsChoosing += secondsSince(start);
       std::cerr << "error: picked " << report.pick.setting.name << ", expected to err by "
@@ -179,21 +180,26 @@ class Sequence {
                 << report.waysMeasured << " ways measured\n";
       Picture picture = renderPick(report, cost);
       start = Clock::now();
-      measure(search, picture, cost, report);
+      const bool kept = measure(search, picture, cost, report);
       report.secondsMeasuring += secondsSince(start);
-      const double measured = report.measured.relativeRmse;
-      if (report.pick.setting.method == kReferenceMethod || measured <= options_.error) {
+      if (kept) {
         totals_.error = report;
         return picture;
       }
-      // Below what this way was expected to err by, so that the next one is another.
-      constexpr double kFurther = 0.95;
-      aim = kFurther * std::min(report.pick.error, aim) * std::min(1.0, options_.error / measured);
       start = Clock::now();
     }
   }
 
-  Picture renderPick(const ErrorReport& report, PictureCost& cost) {
+  Picture renderPick(ErrorReport& report, PictureCost& cost) {
+    constexpr double kMillisecondsASecond = 1000.0;
+    const std::clock_t before = std::clock();
+    Picture picture = renderPicked(report, cost);
+    report.processorMilliseconds =
+        kMillisecondsASecond * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+    return picture;
+  }
+
+  Picture renderPicked(const ErrorReport& report, PictureCost& cost) {
     PictureRequest asked = request();
     cost = {};
     if (report.pick.setting.method != kReferenceMethod) {
@@ -205,18 +211,20 @@ class Sequence {
     return truth_->render(*view_, asked, cost);
   }
 
-  /// The reference errs by its noise alone, which it knows.
-  static void measure(ErrorSearch& search, const Picture& picture, const PictureCost& cost,
-                      ErrorReport& report) {
+  /// Whether a picture errs by no more than was asked. The reference errs by its noise alone, which it knows.
+  bool measure(ErrorSearch& search, const Picture& picture, const PictureCost& cost,
+               ErrorReport& report) const {
     if (report.pick.setting.method == kReferenceMethod) {
       report.measured.relativeRmse = report.measured.low = report.measured.high = cost.relativeError;
       std::cerr << "error: the reference's noise is " << kPercent * cost.relativeError << "% relative RMSE\n";
-      return;
+      return true;
     }
-    report.measured = search.measure(picture);
+    const ErrorSearch::Verdict verdict = search.measure(picture, options_.error);
+    report.measured = verdict.error;
     std::cerr << "error: measured " << kPercent * report.measured.relativeRmse << "% relative RMSE ("
               << kPercent * report.measured.low << "% to " << kPercent * report.measured.high
               << "%) on one pixel in " << search.stride() * search.stride() << '\n';
+    return verdict.kept;
   }
 
   const RenderOptions& options_;

@@ -17,6 +17,8 @@ nlohmann::ordered_json jsonOf(const ErrorReport& report, double asked) {
                               {"setting", report.pick.setting.name},
                               {"expected", report.pick.error},
                               {"expected_ms", report.pick.milliseconds},
+                              {"expected_work", report.pick.work},
+                              {"processor_ms", report.processorMilliseconds},
                               {"measured", report.measured.relativeRmse},
                               {"low95", report.measured.low},
                               {"high95", report.measured.high},

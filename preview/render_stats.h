@@ -16,6 +16,7 @@ struct ErrorReport {
   ErrorPick pick;
   NoisyError measured;
   double secondsChoosing = 0.0, secondsMeasuring = 0.0;
+  double processorMilliseconds = 0.0;  // of this process, for the picture alone
   size_t waysMeasured = 0;
   int stride = 1;
   std::optional<int> bounces;

@@ -103,6 +103,7 @@ class MarchMethod : public Method {
     FilmPicture result = film.read();
     refuseCutRays(result);
     cost.milliseconds = (secondsUploading + secondsSince(start)) * 1e3;
+    cost.densitiesPreparing = cacheDensities;
     cost.densitySamplesPerPixel =
         (result.densitySamples + cacheDensities) / (static_cast<double>(width) * height);
     cost.gpuBytes = volume_->gpuBytes() + film.gpuBytes() + pass_->gpuBytes();

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <string>
 
 #include "base/error.h"
@@ -13,9 +15,6 @@ namespace nephele {
 namespace {
 
 constexpr const char *kMarch = "march", *kTruth = "reference";
-constexpr unsigned kMostSamples = 64;
-// Points in the medium have a noise that no number of samples takes away.
-constexpr unsigned kMostTruthSamples = 2048;
 // Apart from the seeds of the settings that are measured, and from each other.
 constexpr unsigned kChoosingSeed = 0x43686f6fu, kMeasuringSeed = 0x4d656173u;
 
@@ -25,13 +24,6 @@ int strideFor(const PictureRequest& whole) {
   const double pixels = static_cast<double>(whole.width) * whole.height;
   const int stride = static_cast<int>(std::lround(std::sqrt(pixels / kPixels)));
   return std::clamp(stride, 1, std::min(whole.width, whole.height));
-}
-
-/// Of truth: halves cancel, so that over kPixels pixels the mean square of an error is known to a hundredth
-/// of the noise's square or so.
-double noiseFor(double error) {
-  constexpr double kNoise = 0.05, kTimesError = 2.5;
-  return std::min(kNoise, kTimesError * error);
 }
 
 /// The pixels of a whole picture that a sparse one has.
@@ -55,10 +47,17 @@ double pixelsOf(const PictureRequest& request, int stride) {
   return static_cast<double>(strided(request.width, stride)) * strided(request.height, stride);
 }
 
-bool sameButSamples(const Setting& a, const Setting& b) {
-  return a.march.stepVoxels == b.march.stepVoxels && a.march.lightCache == b.march.lightCache &&
-         a.march.cacheVoxels == b.march.cacheVoxels && a.march.shadowStepVoxels == b.march.shadowStepVoxels &&
-         a.march.shadowGrowth == b.march.shadowGrowth;
+PictureRequest sparseRequest(const ViewedScene& view, const PictureRequest& whole) {
+  PictureRequest sparse = whole;
+  sparse.stride = strideFor(whole);
+  sparse.quiet = true;
+  sparse.bounces = bouncesOfTruth(view, whole.bounces);
+  return sparse;
+}
+
+PictureRequest withSeed(PictureRequest request, unsigned seed) {
+  request.seed ^= seed;
+  return request;
 }
 
 }  // namespace
@@ -75,80 +74,115 @@ void requireTruth(const ViewedScene& view) {
                      "give a scene with look: physical by --scene");
 }
 
-std::vector<Setting> marchCandidates(const Scene& scene) {
-  std::vector<Setting> settings;
-  const auto add = [&](double step, bool cache, double cell, double growth) {
+std::vector<MarchCandidate> marchCandidates(const Scene& scene) {
+  std::vector<MarchCandidate> candidates;
+  const auto add = [&](double step, unsigned least, unsigned most) -> MarchSettings& {
+    // Coarse steps may read coarse levels; beside fine ones levels are the larger error.
+    constexpr double kCoarseStep = 2.0;
     Setting setting;
     setting.method = kMarch;
     setting.march = scene.march;
     setting.march.stepVoxels = step;
     setting.march.adaptive = true;
-    setting.march.lightCache = cache;
+    setting.march.lightCache = false;
     setting.march.cacheDepth = std::numeric_limits<double>::max();
-    (cache ? setting.march.cacheVoxels : setting.march.shadowStepVoxels) = cell;
-    if (!cache) setting.march.shadowGrowth = growth;
-    settings.push_back(setting);
+    if (step < kCoarseStep) setting.march.levelPixels = 0.0;
+    return candidates.emplace_back(MarchCandidate{setting, least, most}).setting.march;
   };
-  // Cells of the cache in voxels, then first steps towards a light and their growth.
-  for (const auto& [step, cell] : {std::pair(4.0, 5.34), {2.0, 4.0}, {1.0, 2.67}, {0.5, 2.67}, {0.5, 2.0}})
-    add(step, true, cell, 1.0);
+  struct Cached {
+    double step, n;  // the cache's cells are kCells/n voxels: each another, so that each is prepared anew
+    unsigned least, most;
+  };
+  constexpr double kCells = 16.0;
+  for (const Cached& c :
+       {Cached{4.0, 3.0, 1, 16}, {2.0, 4.0, 1, 32}, {1.0, 5.0, 2, 64}, {0.5, 8.0, 4, 256}}) {
+    MarchSettings& march = add(c.step, c.least, c.most);
+    march.lightCache = true;
+    march.cacheVoxels = kCells / c.n;
+  }
   struct Marched {
     double step, shadow, growth;
+    unsigned least, most;
   };
-  for (const Marched& m : {Marched{4.0, 4.0, 1.3}, Marched{2.0, 2.0, 1.2}, Marched{1.0, 1.0, 1.15},
-                           Marched{0.5, 0.5, 1.1}, Marched{0.25, 0.5, 1.05}})
-    add(m.step, false, m.shadow, m.growth);
-  return settings;
-}
-
-ErrorSearch::ErrorSearch(Method& march, Method& truth, const ViewedScene& view, const PictureRequest& whole,
-                         double error)
-    : march_(march), truth_(truth), view_(view), sparse_(whole), truthNoise_(noiseFor(error)) {
-  sparse_.stride = strideFor(whole);
-  sparse_.quiet = true;
-  sparse_.bounces = bouncesOfTruth(view, whole.bounces);
-  const double share = pixelsOf(whole, 1) / pixelsOf(whole, sparse_.stride);
-  PictureRequest request = sparse_;
-  request.error = truthNoise_;
-  request.mostSamples = kMostTruthSamples;
-  request.seed = whole.seed ^ kChoosingSeed;
-  PictureCost cost;
-  sparseTruth_ = truth_.render(view, request, cost);
-  truthCost_ = share * cost.milliseconds * cost.relativeError * cost.relativeError;
-  bool warm[2] = {false, false};  // drivers finish programs when they first draw
-  for (const Setting& candidate : marchCandidates(view.scene)) {
-    Picture picture = renderSparse(candidate, cost);
-    const double preparing = cost.millisecondsPreparing;
-    if (bool& done = warm[candidate.march.lightCache ? 1 : 0]; !done) {
-      done = true;
-      picture = renderSparse(candidate, cost);
-    }
-    const double each = share * (cost.milliseconds - cost.millisecondsPreparing);
-    for (unsigned samples = 1; samples <= kMostSamples; samples *= 2) {
-      ErrorRung rung{candidate, preparing + each * samples, preparing, {}};
-      rung.setting.samples = samples;
-      rung.setting.name = nameOf(rung.setting);
-      if (samples == 1) rung.error = compareWithHalves(picture, sparseTruth_);
-      rungs_.push_back(std::move(rung));
-    }
+  for (const Marched& m : {Marched{2.0, 2.0, 1.2, 1, 32}, Marched{1.0, 1.0, 1.15, 1, 256},
+                           Marched{0.5, 0.5, 1.1, 16, 256}, Marched{0.25, 0.5, 1.05, 64, 256}}) {
+    MarchSettings& march = add(m.step, m.least, m.most);
+    march.shadowStepVoxels = m.shadow;
+    march.shadowGrowth = m.growth;
   }
-  if (sparse_.stride > 1) calibrate();
-  std::stable_sort(rungs_.begin(), rungs_.end(),
-                   [](const ErrorRung& a, const ErrorRung& b) { return a.milliseconds < b.milliseconds; });
+  return candidates;
 }
 
-void ErrorSearch::calibrate() {
-  // Small pictures may not keep a machine busy: one whole picture of one sample tells by how much.
-  const ErrorRung& rung = rungs_.front();
-  PictureRequest whole = sparse_;
-  whole.stride = 1;
-  whole.samples = rung.setting.samples;
+double workOf(const Setting& setting, double densitiesPreparing, double densities, double rays) {
+  // Of the processor's time on llvmpipe: a density beside the cache takes half as long again, and a ray as
+  // long as 30 densities. Between clouds and steps that tells time within a fifth.
+  constexpr double kWithCache = 1.5, kRay = 30.0;
+  return densitiesPreparing + (setting.march.lightCache ? kWithCache : 1.0) * densities + kRay * rays;
+}
+
+ErrorSearch::ErrorSearch(Method& march, Method& truth, const ViewedScene& view, const PictureRequest& whole)
+    : march_(march),
+      view_(view),
+      sparse_(sparseRequest(view, whole)),
+      share_(pixelsOf(whole, 1) / pixelsOf(whole, sparse_.stride)),
+      choosing_(truth, view, withSeed(sparse_, kChoosingSeed)),
+      measuring_(truth, view, withSeed(sparse_, kMeasuringSeed)) {
+  const std::vector<MarchCandidate> candidates = marchCandidates(view.scene);
+  // Drivers finish programs when they first draw. The cache is left with another cell than the first one's.
+  for (const bool cached : {false, true})
+    for (auto last = candidates.rbegin(); last != candidates.rend(); ++last)
+      if (last->setting.march.lightCache == cached) {
+        PictureCost cost;
+        renderSparse(last->setting, cost);
+        break;
+      }
+  Spent spent;
+  for (size_t i = 0; i < candidates.size(); ++i) addRungs(candidates[i], i, spent);
+  std::stable_sort(rungs_.begin(), rungs_.end(),
+                   [](const ErrorRung& a, const ErrorRung& b) { return a.work < b.work; });
+  tellTimes(spent);
+}
+
+void ErrorSearch::addRungs(const MarchCandidate& candidate, size_t index, Spent& spent) {
   PictureCost cost;
-  march_.render(withSetting(view_, rung.setting), whole, cost);
-  const double found =
-      (cost.milliseconds - cost.millisecondsPreparing) / (rung.milliseconds - rung.preparing);
-  for (ErrorRung& each : rungs_)
-    each.milliseconds = each.preparing + found * (each.milliseconds - each.preparing);
+  Picture picture = renderSparse(candidate.setting, cost);
+  const double pixels = pixelsOf(sparse_, sparse_.stride);
+  const double preparing = workOf(candidate.setting, cost.densitiesPreparing, 0.0, 0.0);
+  const double each =
+      workOf(candidate.setting, 0.0, cost.densitySamplesPerPixel * pixels - cost.densitiesPreparing, pixels);
+  spent.millisecondsPreparing += cost.millisecondsPreparing;
+  spent.workPreparing += preparing;
+  spent.milliseconds += cost.milliseconds - cost.millisecondsPreparing;
+  spent.work += each;
+  for (unsigned samples = candidate.least; samples <= candidate.most; samples *= 2) {
+    ErrorRung rung;
+    rung.setting = candidate.setting;
+    rung.setting.samples = samples;
+    rung.setting.name = nameOf(rung.setting);
+    rung.candidate = index;
+    rung.preparing = preparing;
+    rung.work = preparing + share_ * samples * each;
+    if (samples == 1) rung.picture = std::move(picture);
+    rungs_.push_back(std::move(rung));
+  }
+}
+
+void ErrorSearch::tellTimes(const Spent& spent) {
+  double rate = spent.milliseconds / spent.work;
+  const double ratePreparing =
+      spent.workPreparing > 0.0 ? spent.millisecondsPreparing / spent.workPreparing : 0.0;
+  if (sparse_.stride > 1) {
+    // Small pictures may not keep a machine busy: a whole one of one sample does.
+    const ErrorRung& first = rungs_.front();
+    PictureRequest whole = sparse_;
+    whole.stride = 1;
+    whole.samples = first.setting.samples;
+    PictureCost cost;
+    march_.render(withSetting(view_, first.setting), whole, cost);
+    rate = (cost.milliseconds - cost.millisecondsPreparing) / (first.work - first.preparing);
+  }
+  for (ErrorRung& rung : rungs_)
+    rung.milliseconds = ratePreparing * rung.preparing + rate * (rung.work - rung.preparing);
 }
 
 Picture ErrorSearch::renderSparse(const Setting& setting, PictureCost& cost) {
@@ -157,52 +191,57 @@ Picture ErrorSearch::renderSparse(const Setting& setting, PictureCost& cost) {
   return march_.render(withSetting(view_, setting), request, cost);
 }
 
-bool ErrorSearch::canReach(const ErrorRung& rung, double error) const {
-  // Evenly spread samples converge no faster than by their number; where twice as many brought less than
-  // this share, what is left is no noise.
-  constexpr double kStill = 0.93;
-  const ErrorRung *most = nullptr, *before = nullptr;
-  for (const ErrorRung& other : rungs_) {
-    if (!other.error || !sameButSamples(other.setting, rung.setting)) continue;
-    before = most;
-    most = &other;
+bool ErrorSearch::passes(ErrorRung& rung, double error) {
+  if (rung.picture.names.empty()) {
+    PictureCost cost;
+    rung.picture = renderSparse(rung.setting, cost);
   }
-  if (most == nullptr) return true;
-  const double reached = most->error->relativeRmse;
-  if (before != nullptr && reached > kStill * before->error->relativeRmse) return false;
-  return reached * most->setting.samples <= error * rung.setting.samples;
+  for (size_t step = 0; step <= TruthLadder::stepFor(error); ++step) {
+    if (rung.errors.size() <= step) rung.errors.push_back(choosing_.compared(rung.picture, step));
+    if (rung.errors[step].high > TruthLadder::allowed(error, step)) return false;
+  }
+  return true;
 }
 
-ErrorPick ErrorSearch::pick(double error) {
-  const double truthCost = truthCost_ / (error * error);
-  for (ErrorRung& rung : rungs_) {
-    if (rung.milliseconds >= truthCost) break;
-    if (!rung.error) {
-      if (!canReach(rung, error)) continue;
-      PictureCost cost;
-      rung.error = compareWithHalves(renderSparse(rung.setting, cost), sparseTruth_);
-    }
-    if (rung.error->high <= error) return {rung.setting, rung.error->high, rung.milliseconds};
+ErrorPick ErrorSearch::pick(double error, size_t from) {
+  // Where twice the samples brought less than this share, what is left is no noise. It goes by the noisiest
+  // truth and by all samples before, whatever is asked.
+  constexpr double kStill = 0.93;
+  std::map<size_t, double> reached;  // by candidate: with the most samples so far
+  std::set<size_t> still;
+  const double truthMilliseconds = share_ * choosing_.millisecondsAtOne() / (error * error);
+  for (size_t i = 0; i < rungs_.size(); ++i) {
+    ErrorRung& rung = rungs_[i];
+    if (still.contains(rung.candidate)) continue;
+    if (rung.milliseconds >= truthMilliseconds) continue;
+    const bool good = passes(rung, error);
+    if (good && i >= from) return {rung.setting, rung.errors.back().high, rung.milliseconds, rung.work, i};
+    const double found = rung.errors.front().relativeRmse;
+    const auto [before, first] = reached.try_emplace(rung.candidate, found);
+    if (!first && found > kStill * before->second) still.insert(rung.candidate);
+    before->second = found;
   }
   ErrorPick truth;
   truth.setting.method = truth.setting.name = kTruth;
   truth.error = error;
-  truth.milliseconds = truthCost;
+  truth.milliseconds = truthMilliseconds;
   return truth;
 }
 
-NoisyError ErrorSearch::measure(const Picture& picture) {
-  PictureRequest request = sparse_;
-  request.error = truthNoise_;
-  request.mostSamples = kMostTruthSamples;
-  request.seed = sparse_.seed ^ kMeasuringSeed;
-  PictureCost cost;
-  return compareWithHalves(everyStride(picture, sparse_.stride), truth_.render(view_, request, cost));
+ErrorSearch::Verdict ErrorSearch::measure(const Picture& picture, double error) {
+  const Picture sparse = everyStride(picture, sparse_.stride);
+  Verdict verdict;
+  for (size_t step = 0; step <= TruthLadder::stepFor(error); ++step) {
+    verdict.error = measuring_.compared(sparse, step);
+    verdict.kept = verdict.error.relativeRmse <= TruthLadder::allowed(error, step);
+    if (!verdict.kept) break;
+  }
+  return verdict;
 }
 
 size_t ErrorSearch::measuredRungs() const {
-  return static_cast<size_t>(std::count_if(rungs_.begin(), rungs_.end(),
-                                           [](const ErrorRung& rung) { return rung.error.has_value(); }));
+  return static_cast<size_t>(std::count_if(
+      rungs_.begin(), rungs_.end(), [](const ErrorRung& rung) { return !rung.picture.names.empty(); }));
 }
 
 }  // namespace nephele

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "preview/measure/sweep.h"
+#include "preview/measure/truth_ladder.h"
 
 namespace nephele {
 
@@ -16,14 +17,19 @@ struct ErrorPick {
   Setting setting;
   double error = 0.0;         // expected, relative RMSE: the upper end of what was measured
   double milliseconds = 0.0;  // expected for the whole picture
+  double work = 0.0;          // expected of the whole picture, as workOf; 0 for the reference
+  size_t rung = 0;            // its place by work
 };
 
-/// A way that was measured.
+/// A way to be measured.
 struct ErrorRung {
   Setting setting;
-  double milliseconds = 0.0;        // of the whole picture, from one sample a pixel
-  double preparing = 0.0;           // of these, whatever the samples
-  std::optional<NoisyError> error;  // none: not looked at
+  size_t candidate = 0;            // which of marchCandidates
+  double work = 0.0;               // of the whole picture, from one sample a pixel
+  double preparing = 0.0;          // of it, whatever the samples
+  double milliseconds = 0.0;       // of the whole picture, from the work
+  Picture picture;                 // sparse; empty: not looked at
+  std::vector<NoisyError> errors;  // by the steps of truth that were asked
 };
 
 /// Scatterings after the first in a scene's own truth: `given`; where none is, 0 if its octaves are none,
@@ -33,42 +39,62 @@ std::optional<int> bouncesOfTruth(const ViewedScene& view, std::optional<int> gi
 /// Throws InputError with one sentence where a scene has no truth to err from: the `report` look.
 void requireTruth(const ViewedScene& view);
 
-/// The march's settings that are tried, without samples: steps from 4 voxels to 1/4, light cached and
-/// marched. What they do not set is the scene's.
-std::vector<Setting> marchCandidates(const Scene& scene);
+/// A setting of the march, its samples aside, and how many of them are tried: doubled from the least to the
+/// most.
+struct MarchCandidate {
+  Setting setting;
+  unsigned least = 1, most = 1;
+};
+
+/// What is tried: steps from 4 voxels to 1/4, light cached and marched. What they do not set is the scene's.
+std::vector<MarchCandidate> marchCandidates(const Scene& scene);
+
+/// What a march costs, in densities read: these themselves, more where each asks the light cache as well, and
+/// each ray's way through the index. Counted, not timed: the same on every machine, under any load.
+double workOf(const Setting& setting, double densitiesPreparing, double densities, double rays);
 
 /// Holds what was measured for one volume, camera, light and size. Methods have their volume set, and with
 /// the view outlive the search. Used from one thread.
 class ErrorSearch {
  public:
-  /// Traces truth and one sample of each candidate on about 8000 of the pixels; `whole` is the picture asked
-  /// for, its samples not looked at. `error` is the smallest that will be asked for: below 2% truth is
-  /// traced longer.
-  ErrorSearch(Method& march, Method& truth, const ViewedScene& view, const PictureRequest& whole,
-              double error);
+  /// Renders one sample of each candidate on about 8000 of the pixels; `whole` is the picture asked for, its
+  /// samples not looked at.
+  ErrorSearch(Method& march, Method& truth, const ViewedScene& view, const PictureRequest& whole);
 
-  /// Goes up by expected cost until a setting's error, the upper end of its 95% interval, is at most `error`;
-  /// the reference where its expected cost comes first. So a larger `error` is never expected to cost more.
-  ErrorPick pick(double error);
-  /// What a whole picture errs by, against truth of its own on the same pixels.
-  NoisyError measure(const Picture& picture);
+  /// Goes up by work, from the rung `from` on, until a setting's error, the upper end of its 95% interval, is
+  /// at most `error`; the reference where none is that is expected to take less time. Seeds, truth and order
+  /// do not depend on `error`, and what passes for a tight one passes for a looser one: so a looser one never
+  /// picks more work.
+  ErrorPick pick(double error, size_t from = 0);
 
-  const std::vector<ErrorRung>& rungs() const { return rungs_; }  // by cost
+  struct Verdict {
+    NoisyError error;  // against the least noisy truth that was asked
+    bool kept = false;
+  };
+  /// Whether a whole picture errs by at most `error`, against truth of its own on the same pixels. One that
+  /// does keeps any looser one too.
+  Verdict measure(const Picture& picture, double error);
+
   int stride() const { return sparse_.stride; }
   size_t measuredRungs() const;
 
  private:
-  void calibrate();
+  /// Sparse pictures of one sample: what they took, and their work, without and for what is prepared.
+  struct Spent {
+    double milliseconds = 0.0, work = 0.0;
+    double millisecondsPreparing = 0.0, workPreparing = 0.0;
+  };
+  void addRungs(const MarchCandidate& candidate, size_t index, Spent& spent);
+  void tellTimes(const Spent& spent);
   Picture renderSparse(const Setting& setting, PictureCost& cost);
-  bool canReach(const ErrorRung& rung, double error) const;
+  bool passes(ErrorRung& rung, double error);
 
-  Method &march_, &truth_;
+  Method& march_;
   const ViewedScene& view_;
   PictureRequest sparse_;
-  double truthNoise_;
-  Picture sparseTruth_;
-  double truthCost_ = 0.0;  // milliseconds of the whole picture at a noise of 1
-  std::vector<ErrorRung> rungs_;
+  double share_;  // pixels of the whole picture over those of the sparse one
+  TruthLadder choosing_, measuring_;
+  std::vector<ErrorRung> rungs_;  // by work
 };
 
 }  // namespace nephele

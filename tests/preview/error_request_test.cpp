@@ -36,15 +36,20 @@ Picture evenPicture(const PictureRequest& request, const std::vector<std::string
   return picture;
 }
 
-/// Errs by a bias that grows with steps and the cache's cells, and by noise that falls with samples.
+/// Errs by a bias that grows with steps and the cache's cells, and by noise that falls with samples. Its
+/// clock is off by a factor of up to `clock`, another one each time.
 class KnownMarch : public Method {
  public:
   static double bias(const MarchSettings& march) {
     return 0.004 * march.stepVoxels + (march.lightCache ? 0.006 * march.cacheVoxels : 0.0);
   }
   static double noise(unsigned samples) { return 0.08 / std::sqrt(static_cast<double>(samples)); }
-  static double milliseconds(const MarchSettings& march, unsigned samples) {
-    return 20.0 * samples / march.stepVoxels * (march.lightCache ? 1.0 : 5.0);
+  static double densitiesOfRay(const MarchSettings& march) {
+    return 100.0 / march.stepVoxels * (march.lightCache ? 1.0 : 5.0);
+  }
+  static double work(const Setting& setting, double pixels) {
+    const double rays = pixels * setting.samples;
+    return workOf(setting, 0.0, rays * densitiesOfRay(setting.march), rays);
   }
 
   void setVolume(const BrickVolume&) override {}
@@ -55,12 +60,21 @@ class KnownMarch : public Method {
       for (size_t c = 0; c < 3; ++c)
         picture.planes[c][i] = static_cast<float>(
             kRadiance * (1.0 + bias(view.scene.march) + noise(request.samples) * normal()));
-    const double share =
-        static_cast<double>(picture.planes[0].size()) / (double{1.0} * request.width * request.height);
+    constexpr double kMillisecondsOfWork = 1e-6;
+    Setting setting;
+    setting.march = view.scene.march;
+    setting.samples = request.samples;
+    cost.densitySamplesPerPixel = request.samples * densitiesOfRay(setting.march);
     cost.milliseconds = cost.millisecondsPreparing = 1.0;
-    cost.milliseconds += share * milliseconds(view.scene.march, request.samples);
+    cost.milliseconds += kMillisecondsOfWork * work(setting, static_cast<double>(picture.planes[0].size())) *
+                         std::pow(clock, 2.0 * double{clockRandom_.uniform()} - 1.0);
     return picture;
   }
+
+  double clock = 1.0;
+
+ private:
+  truth::Random clockRandom_{3};
 };
 
 /// Truth in two noisy halves; costs what its noise says.
@@ -97,7 +111,7 @@ struct Search {
     request.height = height;
   }
   ErrorPick pick(double error) {
-    ErrorSearch search(march, truth, view, request, error);
+    ErrorSearch search(march, truth, view, request);
     return search.pick(error);
   }
   KnownMarch march;
@@ -111,29 +125,54 @@ double trueError(const Setting& setting) {
 }
 
 TEST(ErrorRequest, KeepsItsWordAndALooserOneIsNeverDearer) {
+  // Whatever the clock says: another search for each, as another run of the program would make it.
   Search search(1e9);
+  search.march.clock = 4.0;
   double before = 0.0;
-  for (const double error : {0.2, 0.1, 0.05, 0.03, 0.02}) {
+  for (double error = 0.2; error > 0.008; error *= 0.9) {
     const ErrorPick pick = search.pick(error);
     ASSERT_EQ(pick.setting.method, "march") << error;
     EXPECT_LE(trueError(pick.setting), error);
-    EXPECT_GE(pick.milliseconds, before) << error;
-    before = pick.milliseconds;
+    EXPECT_GE(pick.work, before) << error;
+    before = pick.work;
+  }
+}
+
+TEST(ErrorRequest, WhatPassesForATightErrorPassesForALooserOne) {
+  size_t step = TruthLadder::stepFor(0.3);
+  EXPECT_EQ(step, 0u);
+  for (double error = 0.3; error > 0.001; error *= 0.95) {
+    const size_t next = TruthLadder::stepFor(error);
+    EXPECT_GE(next, step);
+    step = next;
+    EXPECT_DOUBLE_EQ(TruthLadder::allowed(error, step), error);
+    for (size_t other = 0; other <= step; ++other)
+      EXPECT_LE(TruthLadder::allowed(error, other), TruthLadder::allowed(1.1 * error, other));
   }
 }
 
 TEST(ErrorRequest, PicksTheCheapestThatReaches) {
   constexpr double kError = 0.05;
   Search search(1e9);
-  const double picked = search.pick(kError).milliseconds;
+  const double picked = search.pick(kError).work;
   constexpr double kSure = 0.97;  // what is nearer to the bound may count as over it
-  for (const Setting& candidate : marchCandidates(search.view.scene)) {
-    for (Setting setting = candidate; setting.samples <= 64; setting.samples *= 2) {
+  const double pixels = double{1.0} * search.request.width * search.request.height;
+  for (const MarchCandidate& candidate : marchCandidates(search.view.scene)) {
+    Setting setting = candidate.setting;
+    for (setting.samples = candidate.least; setting.samples <= candidate.most; setting.samples *= 2) {
       if (trueError(setting) >= kSure * kError) continue;
-      const double milliseconds = KnownMarch::milliseconds(setting.march, setting.samples);
-      EXPECT_LE(picked, 1.05 * milliseconds + 1.0) << nameOf(setting);
+      EXPECT_LE(picked, 1.001 * KnownMarch::work(setting, pixels)) << nameOf(setting);
     }
   }
+}
+
+TEST(ErrorRequest, TheNextPickTakesMoreWork) {
+  Search search(1e9);
+  ErrorSearch picking(search.march, search.truth, search.view, search.request);
+  const ErrorPick first = picking.pick(0.03), second = picking.pick(0.03, first.rung + 1);
+  ASSERT_EQ(second.setting.method, "march");
+  EXPECT_GT(second.work, first.work);
+  EXPECT_LE(trueError(second.setting), 0.03);
 }
 
 TEST(ErrorRequest, TheReferenceIsPickedWhereNoMarchGetsThereOrItIsCheaper) {
@@ -145,17 +184,19 @@ TEST(ErrorRequest, TheReferenceIsPickedWhereNoMarchGetsThereOrItIsCheaper) {
 
 TEST(ErrorRequest, MeasuresAWholePictureOnItsSparseGrid) {
   Search search(1e6);
-  ErrorSearch measuring(search.march, search.truth, search.view, search.request, 0.02);
+  ErrorSearch measuring(search.march, search.truth, search.view, search.request);
   EXPECT_GT(measuring.stride(), 1);
   PictureRequest whole = search.request;
   whole.samples = 4;
   PictureCost cost;
   const Picture picture = search.march.render(search.view, whole, cost);
-  const NoisyError error = measuring.measure(picture);
   const double expected = std::hypot(KnownMarch::bias(search.view.scene.march), KnownMarch::noise(4));
+  const NoisyError error = measuring.measure(picture, 0.02).error;
   EXPECT_NEAR(error.relativeRmse, expected, 0.05 * expected);
   EXPECT_LT(error.low, expected);
   EXPECT_GT(error.high, expected);
+  EXPECT_TRUE(measuring.measure(picture, 1.1 * expected).kept);
+  EXPECT_FALSE(measuring.measure(picture, 0.9 * expected).kept);
 }
 
 TEST(ErrorRequest, WhatHasNoTruthIsRefused) {
