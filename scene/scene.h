@@ -156,7 +156,7 @@ inline constexpr AtlasPrecision kAtlasPrecisions[] = {AtlasPrecision::automatic,
 struct MarchSettings {
   double stepVoxels = 0.5;
   double shadowStepVoxels = 1.0;  // the first step towards a light
-  double shadowGrowth = 1.15;     // of each such step over the one before, from 1 (none) to 2
+  double shadowGrowth = 1.1;      // of each such step over the one before, from 1 (none) to 2
   bool adaptive = true;           // steps grow where the medium is thin; else all are stepVoxels
   bool lightCache = true;         // light from a coarse volume; else marched for at every point
   double cacheVoxels = 2.0;       // between samples of that volume, from 1 to 16; 16/n is reached

@@ -132,7 +132,7 @@ TEST(GlError, TheMarchAtItsDefaultsIsNearSingleScattering) {
     request.seed = 5;
     const NoisyError error = compareWithHalves(marched, lit.truth->render(view, request, cost));
     std::printf("density x %g: %.3g (%.3g to %.3g)\n", times, error.relativeRmse, error.low, error.high);
-    EXPECT_LE(error.relativeRmse, 0.03) << times;  // 2.5% and 2.1%; docs/limits.md
+    EXPECT_LE(error.relativeRmse, 0.02) << times;
   }
 }
 
