@@ -209,7 +209,7 @@ ErrorPick ErrorSearch::pick(double error, size_t from) {
   constexpr double kStill = 0.93;
   std::map<size_t, double> reached;  // by candidate: with the most samples so far
   std::set<size_t> still;
-  const double truthMilliseconds = share_ * choosing_.millisecondsAtOne() / (error * error);
+  const double truthMilliseconds = share_ * choosing_.millisecondsFor(error);
   for (size_t i = 0; i < rungs_.size(); ++i) {
     ErrorRung& rung = rungs_[i];
     if (still.contains(rung.candidate)) continue;

@@ -46,9 +46,16 @@ size_t TruthLadder::stepFor(double error) {
 
 double TruthLadder::allowed(double error, size_t step) { return std::max(error, tells(step)); }
 
-double TruthLadder::millisecondsAtOne() {
+double TruthLadder::millisecondsFor(double error) {
+  if (steps_.empty()) {
+    PictureRequest request = sparse_;
+    request.error = 1.0;
+    PictureCost cost;
+    truth_.render(view_, request, cost);
+    millisecondsLeast_ = cost.milliseconds;
+  }
   at(0);
-  return millisecondsAtOne_;
+  return std::max(millisecondsLeast_, millisecondsAtOne_ / (error * error));
 }
 
 const Picture& TruthLadder::at(size_t step) {

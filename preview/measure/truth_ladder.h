@@ -22,8 +22,9 @@ class TruthLadder {
   /// What `step` may say of a picture that errs by `error`: at least what it can tell. It never shrinks as
   /// `error` grows, and stepFor never grows, so that what passes for a tight error passes for a looser one.
   static double allowed(double error, size_t step);
-  /// Milliseconds of this sparse picture at a noise of 1, as the first step took them.
-  double millisecondsAtOne();
+  /// Expected of this sparse picture at a noise of `error`: from what the first step took, and no less than
+  /// what the least that truth can be asked takes.
+  double millisecondsFor(double error);
 
  private:
   const Picture& at(size_t step);
@@ -34,7 +35,8 @@ class TruthLadder {
   PictureRequest sparse_;
   double fewPixels_ = 1.0;  // less noise than 8000 pixels need
   std::vector<Picture> steps_;
-  double millisecondsAtOne_ = 0.0;
+  double millisecondsAtOne_ = 0.0;  // at a noise of 1, had it any
+  double millisecondsLeast_ = 0.0;
 };
 
 }  // namespace nephele

@@ -97,9 +97,11 @@ class KnownTruth : public Method {
     const double share =
         static_cast<double>(picture.planes[0].size()) / (double{1.0} * request.width * request.height);
     cost.relativeError = request.error;
-    cost.milliseconds = share * atOnePercent_ * 1e-4 / (request.error * request.error);
+    cost.milliseconds = share * std::max(least, atOnePercent_ * 1e-4 / (request.error * request.error));
     return picture;
   }
+
+  double least = 0.0;  // milliseconds that any picture of this size takes
 
  private:
   double atOnePercent_;
@@ -180,6 +182,12 @@ TEST(ErrorRequest, TheReferenceIsPickedWhereNoMarchGetsThereOrItIsCheaper) {
   EXPECT_EQ(fine.setting.method, "reference");
   EXPECT_NEAR(fine.milliseconds, 1e9 * 1e-4 / (0.0005 * 0.0005), 1e-6 * fine.milliseconds);
   EXPECT_EQ(Search(1.0).pick(0.03).setting.method, "reference");
+}
+
+TEST(ErrorRequest, TheReferenceIsNoCheaperThanItsLeast) {
+  Search search(1.0);
+  search.truth.least = 1e6;
+  EXPECT_EQ(search.pick(0.1).setting.method, "march");
 }
 
 TEST(ErrorRequest, MeasuresAWholePictureOnItsSparseGrid) {
