@@ -38,17 +38,19 @@ size_t badValues(const BrickVolume& bricks, const ViewedScene& view) {
   return bad;
 }
 
-TEST(Stability, TheTwinHoldsNoBadValueInAnyCase) {
+void expectNoBadValueOfTheTwin(bool cached) {
   for (const StabilityCase& on : cases()) {
-    const BrickVolume bricks = on.volume();
-    for (const bool cached : {false, true}) {
-      ViewedScene view = on.view;
-      view.scene.march.lightCache = cached;
-      view.scene.march.cacheDepth = std::numeric_limits<double>::max();
-      EXPECT_EQ(badValues(bricks, view), 0u) << nameOf(on) << (cached ? ", light cached" : ", light marched");
-    }
+    ViewedScene view = on.view;
+    view.scene.march.lightCache = cached;
+    view.scene.march.cacheDepth = std::numeric_limits<double>::max();
+    EXPECT_EQ(badValues(on.volume(), view), 0u) << nameOf(on);
   }
 }
+
+// Two tests, since a sanitized build takes a minute for both.
+TEST(Stability, TheTwinHoldsNoBadValueInAnyCaseWithLightCached) { expectNoBadValueOfTheTwin(true); }
+
+TEST(Stability, TheTwinHoldsNoBadValueInAnyCaseWithLightMarched) { expectNoBadValueOfTheTwin(false); }
 
 TEST(Stability, TheReferenceHoldsNoBadValueInAnyCase) {
   const auto method = makeReferenceMethod({});
