@@ -18,7 +18,6 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 using VelocityLeaf = openvdb::Vec3STree::LeafNodeType;
 using openvdb::Coord;
 
-constexpr float kHalfLargest = 65504.0f;
 constexpr int kWordBits = 64;
 
 std::string shown(double value) { return number(value, 3); }

@@ -6,9 +6,6 @@
 
 namespace nephele {
 
-/// The largest finite half.
-inline constexpr float kHalfLargest = 65504.0f;
-
 struct VoxelGrid {
   openvdb::FloatGrid::Ptr grid;
 };

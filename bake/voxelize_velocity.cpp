@@ -1,4 +1,4 @@
-// Velocities on the voxels of a density. Depends on voxelize_grid.h, OpenVDB, TBB.
+// Velocities on the voxels of a density. Depends on voxelize_grid.h, voxelize_kernels.h, OpenVDB, TBB.
 #include <openvdb/tools/Prune.h>
 #include <tbb/parallel_for.h>
 
@@ -9,6 +9,7 @@
 
 #include "bake/voxelize.h"
 #include "bake/voxelize_grid.h"
+#include "bake/voxelize_kernels.h"
 
 namespace nephele {
 namespace {

@@ -66,7 +66,6 @@ class Bench {
     BrickVolume like;
     like.maximum = like.meanActive = 1.0;
     auto volume = std::make_shared<BrickVolume>(liveVolume(box_, like));
-    volume->bound = LiveGrid::boundOf(box_, mostMass_);
     Scene scene = openScene({}, {});
     scene.medium = Medium{};
     scene.medium->sigmaS = Rgb{8.0, 8.0, 8.0};

@@ -89,15 +89,7 @@ class HalvedSource : public BrickSource {
 }  // namespace
 
 BrickVolume coarser(const BrickVolume& finer) {
-  BrickVolume volume;
-  volume.path = finer.path;
-  volume.gridName = finer.gridName;
-  volume.upAxis = finer.upAxis;
-  volume.activeVoxels = finer.activeVoxels;
-  volume.meanActive = finer.meanActive;
-  volume.metadata = finer.metadata;
-  volume.notes = finer.notes;
-  volume.temperature = finer.temperature;
+  BrickVolume volume = withoutBricks(finer);
   volume.worldFromIndex = finer.worldFromIndex;
   for (int axis = 0; axis < 3; ++axis) volume.worldFromIndex[axis] *= 2.0;
   if (finer.empty()) return volume;

@@ -124,6 +124,20 @@ void buildBricks(BrickVolume& volume, const BrickSource& source) {
   volume.brickCount = glm::ivec3(0);
 }
 
+BrickVolume withoutBricks(const BrickVolume& volume) {
+  BrickVolume other;
+  other.path = volume.path;
+  other.gridName = volume.gridName;
+  other.activeVoxels = volume.activeVoxels;
+  other.maximum = volume.maximum;
+  other.meanActive = volume.meanActive;
+  other.upAxis = volume.upAxis;
+  other.metadata = volume.metadata;
+  other.notes = volume.notes;
+  other.temperature = volume.temperature;
+  return other;
+}
+
 double voxelEdge(const BrickVolume& bricks) {
   return std::cbrt(std::abs(glm::determinant(glm::dmat3(bricks.worldFromIndex))));
 }

@@ -33,10 +33,9 @@ struct BrickVolume {
   std::vector<float> samples;      // 729 per slot, x fastest, then y, then z
   std::vector<float> slotMaximum;  // per slot: largest of its 729 samples
   uint64_t activeVoxels = 0;
-  double maximum = 0.0;     // largest sample
-  double bound = 0.0;       // above 0: samples change after reading, and none will ever exceed this
-  double meanActive = 0.0;  // mean over active voxels
-  char upAxis = 'z';        // from the file's metadata, z where it says nothing
+  double maximum = 0.0;                         // largest sample
+  double meanActive = 0.0;                      // mean over active voxels
+  char upAxis = 'z';                            // from the file's metadata, z where it says nothing
   std::map<std::string, std::string> metadata;  // the file's and the grid's, as text
   std::vector<std::string> notes;               // what had to be left out or assumed, as sentences
 
@@ -47,6 +46,10 @@ struct BrickVolume {
   size_t slotCount() const { return slotMaximum.size(); }
   bool empty() const { return slotMaximum.empty(); }
 };
+
+/// Another volume of the same file and grid: with all that is said of them, without transform, box and
+/// bricks.
+BrickVolume withoutBricks(const BrickVolume& volume);
 
 /// Cube root of a voxel's volume in the world.
 double voxelEdge(const BrickVolume& bricks);

@@ -277,21 +277,25 @@ Camera Desk::framed(const BrickVolume& volume, double fov) const {
   return frameCamera(volume, state_.up, fov, aspect(), state_.settings.scene.stage);
 }
 
-void Desk::change(const Settings& before) {
+void Desk::change(const Settings& before, std::optional<CameraMove> move) {
+  std::optional<CameraMove>& known = state_.settings.cameraMove;
+  if (move && known && history_.inGesture()) move->from = known->from;
+  if (move || !history_.inGesture()) known = move;
   history_.changed(before);
   restart();
 }
 
-void Desk::riseAboveFloor() {
+std::optional<CameraMove> Desk::riseAboveFloor() {
   const Stage& stage = state_.settings.scene.stage;
   const Camera now = orbit_.camera();
   const auto below = [&](const Camera& camera) {
     return seesFloorFromBelow(camera, stage, state_.up, viewer_.volume());
   };
   if (!firstScene_.camera && below(firstCamera_)) firstCamera_ = framed(viewer_.volume(), now.fov);
-  if (!below(now)) return;
+  if (!below(now)) return std::nullopt;
   orbit_ = OrbitCamera(framed(viewer_.volume(), now.fov));
   say("the camera was beneath the stage's floor, and stands above it now");
+  return CameraMove{now, orbit_.camera()};
 }
 
 void Desk::takeDrop(const std::string& path) {
@@ -318,11 +322,14 @@ void Desk::adoptScene(const std::string& path) {
   state_.settings.scene = view.scene;
   state_.settings.medium = view.medium;
   state_.settings.environmentMap = view.environmentMap;
-  if (view.scene.camera)
+  std::optional<CameraMove> move;
+  if (view.scene.camera) {
+    move = CameraMove{orbit_.camera(), view.camera};
     orbit_ = OrbitCamera(view.camera);
-  else
-    riseAboveFloor();
-  change(before);
+  } else {
+    move = riseAboveFloor();
+  }
+  change(before, move);
   history_.rest();
   say("took over the scene of " + std::filesystem::path(path).filename().string());
 }
@@ -344,7 +351,10 @@ void Desk::undoOrRedo(bool undo) {
     say(undo ? "nothing to undo" : "nothing to redo");
     return;
   }
-  state_.settings = *value;
+  const std::optional<CameraMove> left = std::exchange(state_.settings, *value).cameraMove;
+  const std::optional<CameraMove>& entered = state_.settings.cameraMove;
+  if (undo && left) orbit_ = OrbitCamera(left->from);
+  if (!undo && entered) orbit_ = OrbitCamera(entered->to);
   restart();
 }
 

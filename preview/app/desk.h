@@ -88,9 +88,10 @@ class Desk {
   void bakeThis();
   /// Looks at all of it, and at the stage.
   Camera framed(const BrickVolume& volume, double fov) const;
-  void change(const Settings& before);
+  /// `move`: of the camera, which undo takes back with the change.
+  void change(const Settings& before, std::optional<CameraMove> move = {});
   /// Frames anew where the stage, which has just changed, would be seen from beneath its floor.
-  void riseAboveFloor();
+  std::optional<CameraMove> riseAboveFloor();
   void restart();
   LaneRequest request(const Settings& settings) const;
   std::array<Shown, kSideCount> shown() const;

@@ -226,8 +226,9 @@ void Desk::picture(const std::string& extension) {
 
 void Desk::takeWishes(const UiWishes& wishes, const Settings& before, bool held) {
   if (wishes.settings) {
-    if (before.scene.stage != state_.settings.scene.stage) riseAboveFloor();
-    change(before);
+    std::optional<CameraMove> move;
+    if (before.scene.stage != state_.settings.scene.stage) move = riseAboveFloor();
+    change(before, move);
   }
   if (!held && !window_.dragging()) history_.rest();
   if (wishes.picture) restart();

@@ -28,6 +28,9 @@ class History {
   /// The hand has let go: the next change begins a step of its own.
   void rest() { inGesture_ = false; }
 
+  /// Whether the next change belongs to the last one's step.
+  bool inGesture() const { return inGesture_; }
+
   /// The value one step back (or forth), for which `now` can be had again; nullopt where there is none.
   std::optional<T> undo(const T& now) { return move(undo_, redo_, now); }
   std::optional<T> redo(const T& now) { return move(redo_, undo_, now); }

@@ -12,21 +12,11 @@ constexpr int64_t kPrewarmFrames = 4;  // in one turn of the window's loop
 // What the box found by few particles is grown by, a share of its sides: others go a little farther.
 constexpr double kMargin = 0.06;
 
-BrickVolume withoutSamples(const BrickVolume& volume) {
-  BrickVolume like;
-  like.path = volume.path;
-  like.maximum = volume.maximum;
-  like.meanActive = volume.meanActive;
-  like.upAxis = volume.upAxis;
-  like.metadata = volume.metadata;
-  return like;
-}
-
 }  // namespace
 
 LiveSession::LiveSession(const LiveSource& source, const ParticleSystem& system, const BrickVolume& like,
                          int64_t frames, int edge)
-    : like_(withoutSamples(like)), frames_(frames), edge_(edge), motion_(system, source.settings) {
+    : like_(withoutBricks(like)), frames_(frames), edge_(edge), motion_(system, source.settings) {
   written_ = writeParticles(system);
   findBox();
   makeVolume();
@@ -46,7 +36,6 @@ void LiveSession::makeVolume() {
   mostMass_ = mostMass(motion_.system(), motion_.rings());
   const LiveBox box = liveBox(found_, edge_);
   if (!volume_ || !(box == box_)) volume_ = std::make_shared<BrickVolume>(liveVolume(box, like_));
-  volume_->bound = LiveGrid::boundOf(box, mostMass_);
   box_ = box;
   stale_ = true;
 }

@@ -58,7 +58,7 @@ class LiveSession {
   void look();
   int64_t substeps() const { return motion_.system().substeps; }
 
-  BrickVolume like_;  // without its samples
+  BrickVolume like_;  // without its bricks
   int64_t frames_;
   int edge_;
   LiveMotion motion_;

@@ -114,10 +114,9 @@ void setWalk(shared::MarchParameters& p, const MarchSettings& march, const Brick
   const double margin = std::max(kLeastMargin, kFloatStep * std::max({cells.x, cells.y, cells.z}));
   // What a step that is longer than the setting's may take of the view, and what that may vary by.
   constexpr double kStepDepth = 0.35, kStepVariation = 0.05;
-  p.walk = vec4(glm::vec3(static_cast<float>(margin),
-                          static_cast<float>(bricks.bound > 0.0 ? bricks.bound : bricks.maximum),
-                          march.adaptive ? static_cast<float>(kStepDepth) : 0.0f),
-                static_cast<float>(kStepVariation));
+  constexpr float kOfTheLayout = 0.0f;  // describeLayout() sets it
+  p.walk = vec4(static_cast<float>(margin), kOfTheLayout,
+                march.adaptive ? static_cast<float>(kStepDepth) : 0.0f, static_cast<float>(kStepVariation));
   // The chord costs nothing to begin with.
   if (!march.lightCache || bricks.empty() || p.chordRadii.w > 0.0f) return;
   const auto samples = [](double cell) {

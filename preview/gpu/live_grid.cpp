@@ -66,8 +66,8 @@ LiveBox liveBox(const MotionBox& box, int edge) {
 }
 
 BrickVolume liveVolume(const LiveBox& box, const BrickVolume& like) {
-  BrickVolume volume;
-  volume.path = like.path;
+  BrickVolume volume = withoutBricks(like);
+  volume.temperature = nullptr;  // densities alone are live
   volume.gridName = "live density";
   volume.worldFromIndex = glm::dmat4(box.voxelSize);
   volume.worldFromIndex[3][3] = 1.0;
@@ -84,10 +84,6 @@ BrickVolume liveVolume(const LiveBox& box, const BrickVolume& like) {
   volume.samples.assign(bricks * kBrickVolume, 1.0f);
   volume.slotMaximum.assign(bricks, 1.0f);
   volume.activeVoxels = volumeOf(box.size);
-  volume.maximum = like.maximum;
-  volume.meanActive = like.meanActive;
-  volume.upAxis = like.upAxis;
-  volume.metadata = like.metadata;
   return volume;
 }
 

@@ -64,7 +64,6 @@ struct Rebuilt {
         grid(changes),
         mostMass(1.1 * massOf(particles)),
         unit(LiveGrid::unitOf(kBox, mostMass, motion.slotCount())) {
-    volume.bound = LiveGrid::boundOf(kBox, mostMass);
     motion.place(particles);
     grid.rebuild(motion, kBox, mostMass, atlas);
   }

@@ -214,8 +214,15 @@ def drops(folder):
     w.until(lambda: w.picture().mean() < 5.0, "a scene without light is not black")
     w.key("ctrl+z")
     w.until(lambda: w.picture().mean() > 20.0, "undo does not bring the scene before back")
+    below = w.settled()
     w.drop(folder / "stage.yaml")  # clouds are framed from below, and a floor would hide them
     w.until_said("beneath the stage's floor, and stands above it now")
+    above = w.settled()
+    assert above.difference(below) > CHANGED, "there is no stage"
+    w.key("ctrl+z")
+    w.until_like(below, "undo takes the stage away, and not the camera back")
+    w.key("ctrl+y")
+    w.until_like(above, "redo does not bring stage and camera back")
     assert w.end() == 0
 
 
