@@ -117,6 +117,8 @@ void Desk::restart() {
   window_.framebufferSize(width_, height_);
   ++restarts_;
   const bool known = std::exchange(statsKnown_, false);
+  if (document_.heat() != state_.settings.scene.emission.grid)
+    document_.chooseHeat(state_.settings.scene.emission.grid);
   if (width_ < 1 || height_ < 1) return;
   followLive();
   viewer_.setGoal(state_.goal);

@@ -233,6 +233,7 @@ void Desk::takeWishes(const UiWishes& wishes, const Settings& before, bool held)
   if (!held && !window_.dragging()) history_.rest();
   if (wishes.picture) restart();
   for (const Action action : wishes.actions) act(action);
+  if (wishes.environment) takeDrop(*wishes.environment);
   if (wishes.grid) document_.chooseGrid(*wishes.grid);
   if (wishes.frame) document_.timeline().seek(*wishes.frame);
   if (wishes.fps) document_.timeline().setFps(*wishes.fps);

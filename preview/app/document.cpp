@@ -2,6 +2,7 @@
 #include "preview/app/document.h"
 
 #include <filesystem>
+#include <utility>
 
 #include "base/error.h"
 #include "volume/vdb_header.h"
@@ -66,6 +67,13 @@ void Document::chooseGrid(const std::string& grid) {
   wish();
 }
 
+void Document::chooseHeat(const std::string& grid) {
+  heat_ = grid;
+  otherHeat_ = true;
+  pending_ = VolumeKey{keyOf(timeline_.shown()).path, grid_, heat_};
+  wish();
+}
+
 void Document::take(const ReadVolume& read, const VolumeKey& key) {
   volume_ = read.volume;
   watch_ = FileWatch(key.path, read.stamp);
@@ -76,6 +84,7 @@ DocumentNews Document::settlePending() {
   const std::optional<ReadVolume> read = reader_.find(key);
   if (!read) return {};
   pending_.reset();
+  const bool otherHeat = std::exchange(otherHeat_, false);
   const std::string shown = keyOf(timeline_.shown()).path;
   if (!read->volume) return {nullptr, false, read->complaint + " (" + nameOfFile(shown) + " stays)"};
   take(*read, key);
@@ -88,8 +97,9 @@ DocumentNews Document::settlePending() {
     folder_ = FileWatch(folderOf(key.path), stampOf(folderOf(key.path)));
     reloading_ = false;
   }
-  return {volume_, otherFile,
-          otherFile ? "opened " + nameOfFile(key.path) : "showing grid '" + volume_->gridName + "'"};
+  if (otherFile) return {volume_, true, "opened " + nameOfFile(key.path)};
+  return {volume_, false,
+          otherHeat ? "temperatures from grid '" + heat_ + "'" : "showing grid '" + volume_->gridName + "'"};
 }
 
 DocumentNews Document::settleFrame(double seconds) {

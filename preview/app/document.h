@@ -42,6 +42,10 @@ class Document {
   /// Asks for another file, or another grid of this one.
   void open(const std::string& path);
   void chooseGrid(const std::string& grid);
+  /// Asks for temperatures from another grid. Where they cannot be read, what is shown stays.
+  void chooseHeat(const std::string& grid);
+  /// The one asked for last.
+  const std::string& heat() const { return heat_; }
   /// Call each turn of the loop.
   DocumentNews advance(double seconds);
   /// Call about twice a second: looks whether the file, or its folder, has changed.
@@ -74,6 +78,7 @@ class Document {
   FileWatch folder_;  // for frames that come and go
   std::optional<VolumeKey> pending_;
   bool reloading_ = false;
+  bool otherHeat_ = false;  // was asked for, and is not there yet
 };
 
 }  // namespace nephele

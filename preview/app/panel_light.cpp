@@ -1,11 +1,11 @@
 // Presets, lights, environment, medium, orders of scattering. Depends on imgui, scene, app/orbit_camera.h and
 // preview/stage_places.h.
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <numbers>
 
 #include "preview/app/orbit_camera.h"
@@ -69,11 +69,6 @@ bool rampWidgets(SkyRamp& ramp) {
 }
 
 bool latLongWidgets(LatLong& picture) {
-  if (picture.path.empty()) {
-    ImGui::TextDisabled("drop an .exr");
-    return false;
-  }
-  ImGui::TextUnformatted(std::filesystem::path(picture.path).filename().string().c_str());
   constexpr double kHalfTurn = 180.0;
   double rotation = picture.rotation * kDegrees;
   const bool turned = widgets::slider("rotation", rotation, -kHalfTurn, kHalfTurn, "%.1f deg");
@@ -81,13 +76,21 @@ bool latLongWidgets(LatLong& picture) {
   return widgets::amount("intensity", picture.intensity) || turned;
 }
 
-bool environmentWidgets(Environment& environment) {
+/// The picture's path, taken over by Enter; else one is dropped.
+void latLongPath(const LatLong& picture, UiWishes& wishes) {
+  std::string path = picture.path;
+  if (ImGui::InputTextWithHint("picture", "path of an .exr, or drop one", &path,
+                               ImGuiInputTextFlags_EnterReturnsTrue))
+    wishes.environment = path;
+}
+
+bool environmentWidgets(Environment& environment, UiWishes& wishes) {
   using Kind = Environment::Kind;
   bool changed = false;
   if (ImGui::BeginCombo("kind", nameOf(environment.kind).c_str())) {
     for (const Kind kind : {Kind::constant, Kind::ramp, Kind::exr}) {
       const bool missing = kind == Kind::exr && environment.exr.path.empty();
-      const std::string name = nameOf(kind) + (missing ? " (drop one)" : "");
+      const std::string name = nameOf(kind) + (missing ? " (no picture yet)" : "");
       const ImGuiSelectableFlags flags = missing ? ImGuiSelectableFlags_Disabled : 0;
       if (!ImGui::Selectable(name.c_str(), kind == environment.kind, flags)) continue;
       environment.kind = kind;
@@ -97,6 +100,7 @@ bool environmentWidgets(Environment& environment) {
   }
   if (environment.kind == Kind::constant) changed |= widgets::light("radiance", environment.constant);
   if (environment.kind == Kind::ramp) changed |= rampWidgets(environment.ramp);
+  latLongPath(environment.exr, wishes);
   if (environment.kind == Kind::exr) changed |= latLongWidgets(environment.exr);
   return ImGui::Checkbox("in every picture", &environment.show) || changed;
 }
@@ -170,13 +174,20 @@ bool octaveWidgets(Octaves& octaves, const LightModel& model) {
   return changed || factors;
 }
 
-bool emissionWidgets(Emission& emission) {
+bool emissionWidgets(Emission& emission, const Document& document) {
   constexpr const char* kStates = "where the file has it\0on\0off\0";
   int state = !emission.on ? 0 : *emission.on ? 1 : 2;
   bool changed = ImGui::Combo("emission", &state, kStates);
   if (changed) emission.on = state == 0 ? Switch{} : Switch{state == 1};
   if (emission.on == Switch{false}) return changed;
-  ImGui::TextDisabled("from the grid '%s'", emission.grid.c_str());
+  if (ImGui::BeginCombo("temperatures", emission.grid.c_str())) {
+    for (const GridChoice& grid : document.grids()) {
+      if (!grid.isFloat || !ImGui::Selectable(grid.name.c_str(), grid.name == emission.grid)) continue;
+      emission.grid = grid.name;
+      changed = true;
+    }
+    ImGui::EndCombo();
+  }
   changed |= widgets::amount("scale", emission.scale);
   return widgets::amount("kelvin per unit", emission.temperatureScale) || changed;
 }
@@ -201,13 +212,13 @@ void notPhysicalTerms(const LightModel& model) {
   }
 }
 
-bool termWidgets(Scene& scene, const Medium& medium) {
+bool termWidgets(Scene& scene, const Medium& medium, const Document& document) {
   bool changed = lookWidgets(scene);
   const LightModel model = lightModelOf(scene, medium);
   changed |= silverLiningWidgets(scene.silverLining, model);
   changed |= powderWidgets(scene.powder, model);
   changed |= octaveWidgets(scene.octaves, model);
-  changed |= emissionWidgets(scene.emission);
+  changed |= emissionWidgets(scene.emission, document);
   bool chord = scene.lightTransmittance == LightTransmittance::chord;
   if (ImGui::Checkbox("shadows by the chord", &chord)) {
     scene.lightTransmittance = chord ? LightTransmittance::chord : LightTransmittance::marched;
@@ -240,11 +251,12 @@ void lightParts(UiState& state, const UiFacts& facts, UiWishes& wishes) {
   changed |= widgets::slider("exposure", state.settings.exposureEv, -kMostEv, kMostEv, "%.2f EV");
   widgets::group("Lights", true, [&] { changed |= lightWidgets(scene.lights, state.up); });
   widgets::group("Environment", false, [&] {
-    changed |= environmentWidgets(scene.environment);
+    changed |= environmentWidgets(scene.environment, wishes);
     changed |= backdropWidgets(scene.backdrop);
   });
   widgets::group("Medium", false, [&] { changed |= mediumWidgets(state.settings.medium); });
-  widgets::group("Light in the cloud", false, [&] { changed |= termWidgets(scene, state.settings.medium); });
+  widgets::group("Light in the cloud", false,
+                 [&] { changed |= termWidgets(scene, state.settings.medium, facts.document); });
   widgets::group("Stage", false, [&] {
     changed |= stageWidgets(scene.stage, placesOf(scene.stage, state.up, facts.document.volume()));
   });

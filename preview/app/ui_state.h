@@ -55,6 +55,7 @@ struct UiWishes {
   bool picture = false;   // another picture is needed: view, slice or goal were changed
   std::vector<Action> actions;
   std::optional<std::string> grid;
+  std::optional<std::string> environment;  // path of a lat-long picture to be lit by
   std::optional<int> frame;
   std::optional<double> fps;
 };

@@ -21,6 +21,7 @@ BrickVolume loadText(const VolumeKey& key) {
   volume.path = key.path;
   volume.gridName = key.grid.empty() ? "density" : key.grid;
   volume.maximum = density;
+  volume.metadata["heat"] = key.heat;
   return volume;
 }
 
@@ -57,6 +58,20 @@ TEST(Document, OpensAnotherFile) {
   EXPECT_EQ(news.volume->maximum, 2.0);
   EXPECT_TRUE(news.otherFile);
   EXPECT_EQ(news.notice, "opened b.vdb");
+}
+
+TEST(Document, TemperaturesComeFromAnotherGrid) {
+  const ScratchFolder folder;
+  OpenFile open(folder.write("a.vdb", "1"));
+  open.document.chooseHeat("fire");
+  EXPECT_EQ(open.document.heat(), "fire");
+  const DocumentNews news = open.waitForNews();
+  ASSERT_TRUE(news.volume);
+  EXPECT_EQ(news.volume->metadata.at("heat"), "fire");
+  EXPECT_FALSE(news.otherFile);
+  EXPECT_EQ(news.notice, "temperatures from grid 'fire'");
+  folder.write("a.vdb", "2");  // which a reload asks for again
+  EXPECT_EQ(open.waitForNews(true).volume->metadata.at("heat"), "fire");
 }
 
 TEST(Document, AWrongFileLeavesTheOld) {

@@ -31,7 +31,7 @@ const std::map<std::string, std::string> kLabels{
     {"emission.on", "emission"},
     {"emission.scale", "scale"},
     {"emission.temperature_scale", "kelvin per unit"},
-    {"emission.grid", "from the grid"},  // shown: it is read with the file
+    {"emission.grid", "temperatures"},
     {"lights.sun.to_light", "azimuth"},
     {"lights.sun.irradiance", "irradiance"},
     {"lights.point.position", "position"},
@@ -42,7 +42,7 @@ const std::map<std::string, std::string> kLabels{
     {"environment.ramp.zenith", "zenith"},
     {"environment.ramp.cloudiness", "cloudiness"},
     {"environment.ramp.intensity", "intensity"},
-    {"environment.exr.path", "sky.exr"},  // shown: it is dropped
+    {"environment.exr.path", "sky.exr"},
     {"environment.exr.rotation", "rotation"},
     {"environment.exr.intensity", "intensity"},
     {"environment.show", "in every picture"},
