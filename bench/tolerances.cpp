@@ -13,6 +13,7 @@
 #include "bake/trial.h"
 #include "base/error.h"
 #include "base/figures.h"
+#include "base/tolerance.h"
 
 namespace nephele::bench {
 namespace {
@@ -81,13 +82,13 @@ Asked parsed(int argc, char** argv) {
     else if (word == "--only" && i + 1 < argc)
       asked.only = argv[++i];
     else if (word == "--tolerance" && i + 1 < argc)
-      tolerances.push_back(std::strtod(argv[++i], nullptr));
+      tolerances.push_back(parseTolerance(argv[++i]));
     else
       asked.folder = word;
   }
   if (!tolerances.empty()) asked.tolerances = tolerances;
   if (asked.folder.empty())
-    throw InputError({}, "usage: nephele_tolerances FOLDER [--seed N] [--only NAME] [--tolerance SHARE]...");
+    throw InputError({}, "usage: nephele_tolerances FOLDER [--seed N] [--only NAME] [--tolerance 3%]...");
   return asked;
 }
 
