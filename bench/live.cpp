@@ -97,7 +97,7 @@ class Bench {
     MarchPass pass(Filter::hardware);
     Film film(options_.width, options_.height);
     ViewedScene moving = view_;
-    moving.scene.march = movingMarch(moving.scene.march);
+    moving.scene.march = movingMarch(moving.scene.march, 1.0);
     pass.setEnvironment(view_.environmentMap);
     std::vector<double> all, picture;
     for (int frame = 0; frame < kFrames; ++frame)

@@ -123,7 +123,7 @@ class Bench {
 
   double halfFromHere() {
     ViewedScene coarse = view_;
-    coarse.scene.march = movingMarch(coarse.scene.march);
+    coarse.scene.march = movingMarch(coarse.scene.march, 0.5);
     MarchPass pass(Filter::hardware);
     const BrickAtlas atlas(*bricks_, Filter::hardware, texelFor(coarse.scene.march.precision, *bricks_));
     constexpr int kHalfWidth = kWidth / 2, kHalfHeight = kHeight / 2, kTries = 12;

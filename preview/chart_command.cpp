@@ -34,7 +34,8 @@ Scene physicalScene(const std::string& path, const std::optional<int>& bounces) 
   if (scene.stage.on) std::cerr << "chart: the stage has no truth and is left out\n";
   scene.stage.on = false;
   scene.lightTransmittance = LightTransmittance::marched;
-  scene.march.levelPixels = 0.0;  // the small pictures stand for large ones, which resolve every voxel
+  scene.march.levelPixels = scene.march.stepPixels =
+      0.0;  // the small pictures stand for large ones, which resolve every voxel
   return scene;
 }
 

@@ -304,6 +304,7 @@ Stage readStage(const yaml::Node& node, Diagnostics& out) {
 // Between samples of the light cache: a voxel at least, at most one of its blocks; so far too it is marched
 // before.
 constexpr Range kCacheVoxels{1.0, 16.0, false, false}, kNear{0.0, 16.0, false, false};
+constexpr Range kPixels{0.0, 64.0, false, false};
 
 MarchSettings readMarch(const yaml::Node& node, Diagnostics& out) {
   yaml::MapReader reader(node, "'march'", out);
@@ -320,7 +321,8 @@ MarchSettings readMarch(const yaml::Node& node, Diagnostics& out) {
   march.giveUp = reader.number("give_up", march.giveUp, {0.0, 0.1, true, false});
   march.cacheNearSteps = static_cast<int>(reader.integer("cache_near_steps", march.cacheNearSteps, kNear));
   march.checkSkips = reader.boolean("check_skips", march.checkSkips);
-  march.levelPixels = reader.number("level_pixels", march.levelPixels, {0.0, 64.0, false, false});
+  march.levelPixels = reader.number("level_pixels", march.levelPixels, kPixels);
+  march.stepPixels = reader.number("step_pixels", march.stepPixels, kPixels);
   std::vector<std::string> names;
   for (const AtlasPrecision precision : kAtlasPrecisions) names.push_back(nameOf(precision));
   const std::string name = reader.choice("precision", nameOf(march.precision), names);

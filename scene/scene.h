@@ -152,7 +152,8 @@ enum class AtlasPrecision { automatic, r8, r16f, r32f };
 inline constexpr AtlasPrecision kAtlasPrecisions[] = {AtlasPrecision::automatic, AtlasPrecision::r8,
                                                       AtlasPrecision::r16f, AtlasPrecision::r32f};
 
-/// Steps in voxels of the level being read.
+/// Steps and the light cache's spacings in voxels of the level being read, or in what covers stepPixels
+/// pixels where that is longer.
 struct MarchSettings {
   double stepVoxels = 0.5;
   double shadowStepVoxels = 1.0;  // the first step towards a light
@@ -170,7 +171,8 @@ struct MarchSettings {
   bool alwaysCached = false;
   bool checkSkips = false;        // reads what was skipped as well, and counts what that would have changed
   AtlasPrecision precision = AtlasPrecision::automatic;
-  double levelPixels = 1.0;  // voxels that cover at most so many come from coarser levels; 0: none do
+  double levelPixels = 0.5;  // voxels that cover at most so many come from coarser levels; 0: none do
+  double stepPixels = 1.0;   // steps take voxels to cover at least so many; 0: whatever they cover
   bool operator==(const MarchSettings&) const = default;
 };
 

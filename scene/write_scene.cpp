@@ -165,11 +165,13 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
   if (scene.stage != Stage{}) text += textOf(scene.stage);
   text += "look: " + nameOf(scene.look) + "\n";
   text +=
-      "# Steps in voxels; each step towards a light is shadow_growth times the one before. adaptive: longer "
-      "where the medium "
-      "is\n# thin. light_cache: light from samples `cache` and `sky_cache` voxels apart, after cache_near "
-      "voxels marched in "
-      "so many steps,\n# where a voxel of mean density is at most cache_depth thick.\nmarch: { step: " +
+      "# Steps in voxels, taken to cover step_pixels at least; each towards a light is shadow_growth times "
+      "the one before."
+      "\n# adaptive: longer where the medium is thin. light_cache: light from samples `cache` and "
+      "`sky_cache` voxels apart,"
+      "\n# after cache_near voxels marched in so many steps, where a voxel of mean density is at most "
+      "cache_depth thick."
+      "\n# level_pixels: voxels that cover at most so many come from coarser levels.\nmarch: { step: " +
       shortest(scene.march.stepVoxels) + ", shadow_step: " + shortest(scene.march.shadowStepVoxels) +
       ", shadow_growth: " + shortest(scene.march.shadowGrowth) +
       ", adaptive: " + (scene.march.adaptive ? "true" : "false") +
@@ -182,7 +184,8 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
       ", give_up: " + shortest(scene.march.giveUp) +
       ", check_skips: " + (scene.march.checkSkips ? "true" : "false") +
       ", precision: " + nameOf(scene.march.precision) +
-      ", level_pixels: " + shortest(scene.march.levelPixels) + " }\n";
+      ", level_pixels: " + shortest(scene.march.levelPixels) +
+      ", step_pixels: " + shortest(scene.march.stepPixels) + " }\n";
   return text;
 }
 

@@ -12,11 +12,15 @@ namespace {
 
 double lengthOf(const glm::dvec4& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
-int levelAt(const Resolution& resolution, const glm::dmat4& worldFromIndex, const glm::dvec3& point) {
+double voxelsAt(const Resolution& resolution, const glm::dmat4& worldFromIndex, const glm::dvec3& point) {
   const double distance = lengthOf(worldFromIndex * glm::dvec4(point - resolution.eye, 0.0));
   const double voxel =
       std::max({lengthOf(worldFromIndex[0]), lengthOf(worldFromIndex[1]), lengthOf(worldFromIndex[2])});
-  const double level = std::log2(resolution.pixels * distance / (voxel * resolution.pixelsPerRadian));
+  return resolution.pixels * distance / (voxel * resolution.pixelsPerRadian);
+}
+
+int levelAt(const Resolution& resolution, const glm::dmat4& worldFromIndex, const glm::dvec3& point) {
+  const double level = std::log2(voxelsAt(resolution, worldFromIndex, point));
   constexpr double kRounding = 1e-9;
   // Also where it is NaN or minus infinity.
   return level >= 1.0 - kRounding ? static_cast<int>(std::min<double>(level + kRounding, BrickLevels::kMost))
@@ -99,6 +103,11 @@ class Cutter {
 IndexFrame frameOf(const BrickVolume& volume, int level) {
   if (volume.empty()) return {level, volume.brickMin, glm::ivec3(0), glm::ivec3(0), glm::ivec3(0)};
   return {level, volume.brickMin, volume.brickCount, volume.activeMin - 1, volume.activeMax};
+}
+
+double voxelsAcross(const Resolution& resolution, const glm::dmat4& worldFromIndex, const glm::dvec3& low,
+                    const glm::dvec3& high) {
+  return voxelsAt(resolution, worldFromIndex, glm::clamp(resolution.eye, low, high));
 }
 
 int levelFor(const Resolution& resolution, const glm::dmat4& worldFromIndex, const glm::dvec3& low,

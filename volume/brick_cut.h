@@ -25,8 +25,13 @@ struct IndexFrame {
 /// The frame of a volume's own index.
 IndexFrame frameOf(const BrickVolume& volume, int level = 0);
 
-/// The coarsest level whose voxels cover at most `resolution.pixels` at the nearest point of a box, which is
-/// given in voxels of the finest level. 0 where even that level's cover more, and where the eye is inside.
+/// How many voxels of the finest level, along their longest edge, `resolution.pixels` cover at the nearest
+/// point of a box, which is given in such voxels; 0 where the eye is inside.
+double voxelsAcross(const Resolution& resolution, const glm::dmat4& worldFromIndex, const glm::dvec3& low,
+                    const glm::dvec3& high);
+
+/// The coarsest level whose voxels cover at most `resolution.pixels` there. 0 where even that level's cover
+/// more.
 int levelFor(const Resolution& resolution, const glm::dmat4& worldFromIndex, const glm::dvec3& low,
              const glm::dvec3& high);
 

@@ -59,7 +59,7 @@ void Lane::drawQuick(const LaneTools& tools) {
   const int width = std::max(1, request_.width / divisor_), height = std::max(1, request_.height / divisor_);
   fitFilm(quick_, width, height);
   ViewedScene coarse = request_.view;
-  coarse.scene.march = movingMarch(coarse.scene.march);
+  coarse.scene.march = movingMarch(coarse.scene.march, static_cast<double>(height) / request_.height);
   const auto start = Clock::now();
   tools.pass.setParameters(
       marchParameters(coarse, tools.bricks, tools.atlas.layout().frame, width, height, tools.seed, true));

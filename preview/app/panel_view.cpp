@@ -36,6 +36,7 @@ bool marchWidgets(MarchSettings& march) {
   changed |= ImGui::Checkbox("check what is skipped", &march.checkSkips);
   constexpr double kMostLevelPixels = 8.0;
   changed |= widgets::slider("coarser below", march.levelPixels, 0.0, kMostLevelPixels, "%.2f pixels");
+  changed |= widgets::slider("steps as of", march.stepPixels, 0.0, kMostLevelPixels, "voxels of %.2f pixels");
   constexpr const char* kPrecisions = "auto\0r8\0r16f\0r32f\0";  // in the enum's order
   int precision = static_cast<int>(march.precision);
   if (ImGui::Combo("precision", &precision, kPrecisions)) {

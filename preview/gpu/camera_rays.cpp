@@ -100,14 +100,23 @@ void setLights(shared::MarchParameters& p, const std::vector<Light>& lights, con
   }
 }
 
-/// Optical depth of a voxel of mean active density.
-double voxelDepth(const BrickVolume& bricks, double sigmaMax) {
-  return sigmaMax * bricks.meanActive * voxelEdge(bricks);
+/// Optical depth of one of the frame's voxels of mean active density.
+double voxelDepth(const BrickVolume& bricks, const IndexFrame& frame, double sigmaMax) {
+  return sigmaMax * bricks.meanActive * scaleOf(frame) * voxelEdge(bricks);
 }
 
-/// How steps follow the optical depth, and what the light cache holds.
-void setWalk(shared::MarchParameters& p, const MarchSettings& march, const BrickVolume& bricks,
-             const IndexFrame& frame) {
+/// How many of the frame's voxels count as one: more than 1 where they cover less than the scene's
+/// step_pixels.
+double voxelsCounted(const ViewedScene& view, const BrickVolume& bricks, const IndexFrame& frame,
+                     int height) {
+  if (bricks.empty()) return 1.0;
+  const Resolution asked = resolutionOf(view.camera, bricks, height, view.scene.march.stepPixels);
+  const dvec3 low(bricks.activeMin - 1), high(bricks.activeMax);
+  return std::max(1.0, voxelsAcross(asked, bricks.worldFromIndex, low, high) / scaleOf(frame));
+}
+
+/// How steps follow the optical depth.
+void setWalk(shared::MarchParameters& p, const MarchSettings& march, const IndexFrame& frame) {
   const dvec3 cells(frame.brickCount * kBrickCells);
   // A float's last place at the far end of the index, a few times over, and never less than can matter.
   constexpr double kLeastMargin = 1e-4, kFloatStep = 1e-6;
@@ -117,27 +126,40 @@ void setWalk(shared::MarchParameters& p, const MarchSettings& march, const Brick
   constexpr float kOfTheLayout = 0.0f;  // describeLayout() sets it
   p.walk = vec4(static_cast<float>(margin), kOfTheLayout,
                 march.adaptive ? static_cast<float>(kStepDepth) : 0.0f, static_cast<float>(kStepVariation));
+}
+
+/// What the light cache holds. `counted`: see voxelsCounted.
+void setCache(shared::MarchParameters& p, const MarchSettings& march, const BrickVolume& bricks,
+              const IndexFrame& frame, double counted) {
   // The chord costs nothing to begin with.
   if (!march.lightCache || bricks.empty() || p.chordRadii.w > 0.0f) return;
-  const auto samples = [](double cell) {
-    return 1 + std::max(1, static_cast<int>(std::lround(kBlockBricks * kBrickCells / cell)));
+  // By powers of two: between them a camera that moves needs no other cache.
+  constexpr double kRounding = 1e-9;
+  const double wider = std::exp2(std::floor(std::log2(counted) + kRounding));
+  p.shadow.w = static_cast<float>(wider);
+  constexpr double kBlock = kBlockBricks * kBrickCells;
+  const double cell = std::min(wider * march.cacheVoxels, kBlock);
+  // The sky's samples are the farther apart already.
+  constexpr double kSkyFollows = 0.75;
+  const double skyCell = std::min(std::max(1.0, kSkyFollows * wider) * march.skyCacheVoxels, kBlock);
+  const auto samples = [](double spacing) {
+    return 1 + std::max(1, static_cast<int>(std::lround(kBlock / spacing)));
   };
   // Between samples the cache mixes 1/(1 + κ column), which keeps columns of any depth. With a small κ places
   // just inside a cloud come out too dark, with a large one too bright; in between they are right on the
   // mean.
   constexpr float kMixedBy = 0.5f;
   const float sigmaMax = std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z));
-  const bool good = voxelDepth(bricks, double{sigmaMax}) <= march.cacheDepth;
+  const bool good = wider * voxelDepth(bricks, frame, double{sigmaMax}) <= march.cacheDepth;
   if (good || march.alwaysCached)
     p.cache = vec4(good ? shared::kColumnsInHalves : shared::kColumnsInBytes, kMixedBy * sigmaMax,
                    static_cast<float>(march.cacheNearVoxels), static_cast<float>(march.cacheNearSteps));
   constexpr float kGrowth = 1.2f, kSkyGrowth = 1.5f;
-  p.cacheSteps = vec4(static_cast<float>(0.5 * march.cacheVoxels), kGrowth,
-                      static_cast<float>(0.5 * march.skyCacheVoxels), kSkyGrowth);
+  p.cacheSteps = vec4(static_cast<float>(0.5 * cell), kGrowth, static_cast<float>(0.5 * skyCell), kSkyGrowth);
   // A picture's small suns fall between the few directions that are kept.
   const int kind = static_cast<int>(p.skyUp.w);
   const bool sky = kind == shared::kSkyConstant || kind == shared::kSkyRamp;
-  p.cacheShape = glm::ivec4(samples(march.cacheVoxels), sky ? samples(march.skyCacheVoxels) : 0, 0, 0);
+  p.cacheShape = glm::ivec4(samples(cell), sky ? samples(skyCell) : 0, 0, 0);
 }
 
 }  // namespace
@@ -179,6 +201,7 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
   p.boxMax = row(dvec3(frame.boxMax - brickCorner));
   if (bricks.empty()) p.boxMin = p.boxMax = vec4(0.0f);  // a box that no ray meets
   const Scene& scene = view.scene;
+  const double counted = voxelsCounted(view, bricks, frame, height);
   p.sigmaS.w = static_cast<float>(scene.march.stepVoxels);
   p.environment.w = static_cast<float>(scene.march.giveUp);
   setLightParameters(p, view, bricks, frame);
@@ -189,8 +212,9 @@ shared::MarchParameters marchParameters(const ViewedScene& view, const BrickVolu
     throw InputError({bricks.path}, "holds densities above 1e15, more than the march computes with");
   NEPHELE_CHECK_GT(scene.march.shadowStepVoxels, 0.0);
   NEPHELE_CHECK_LE(1.0, scene.march.shadowGrowth);  // less would never arrive
-  p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, 0.0), 0.0);
-  setWalk(p, scene.march, bricks, frame);
+  p.shadow = row(dvec3(scene.march.shadowStepVoxels, scene.march.shadowGrowth, counted), counted);
+  setWalk(p, scene.march, frame);
+  setCache(p, scene.march, bricks, frame, counted);
   p.counts.w = randomStart ? 1 : 0;
   p.blockCount.w = scene.march.checkSkips ? 1 : 0;
   p.brickCount = glm::ivec4(frame.brickCount, static_cast<int>(seed));

@@ -49,7 +49,9 @@ std::shared_ptr<const BrickAtlas> SeenVolume::make(const ViewedScene& view, int 
   options.resolution = resolutionOf(view.camera, bricks_, height, view.scene.march.levelPixels);
   ViewedScene counted = view;
   if (moves_)
-    counted.scene.march = movingMarch(counted.scene.march);  // asks for all that one at rest asks for
+    counted.scene.march = movingMarch(counted.scene.march, 1.0);  // asks for all that one at rest asks for
+  counted.scene.march.stepPixels =
+      0.0;  // which voxels the bricks will have is not known yet: at most so many bytes
   options.blockBytes =
       LightCache::blockBytes(filter_, marchParameters(counted, bricks_, width, height, 0, false));
   if (!heat_) heat_ = atlasOfTemperatures(bricks_, filter_);

@@ -92,7 +92,8 @@ NPH_FN float columnTowards(vec3 position, vec3 direction, float reach, float eno
   if (params.chordRadii.w > 0.0f)
     return params.chordCentre.w *
            ellipsoidChord(position, direction, vec3(params.chordCentre), vec3(params.chordRadii), reach);
-  return columnDensity(position, direction, reach, enough, vec2(params.shadow), start, cost);
+  vec2 steps = vec2(params.shadow.x * voxelAt(position, params.shadow.z), params.shadow.y);
+  return columnDensity(position, direction, reach, enough, steps, start, cost);
 }
 
 // What powder leaves of the light that a place of density `rho` scatters.

@@ -26,7 +26,7 @@ NPH_FN float lightColumn(int light, vec3 position, vec3 direction, float reach, 
   float way = 0.0f;
   vec3 texel = cacheTexel(position, params.cacheShape.x);
   if (NPH_NEAR) {
-    float wanted = min(params.cache.z * voxelAt(position) / length(direction), reach);
+    float wanted = min(params.cache.z * voxelAt(position, params.shadow.w) / length(direction), reach);
     vec3 there = cacheTexel(position + wanted * direction, params.cacheShape.x);
     if (there.x >= 0.0f) {
       way = wanted;

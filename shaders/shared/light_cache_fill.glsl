@@ -7,11 +7,17 @@ NPH_FN vec3 cachePosition(ivec3 block, ivec3 local, int samples) {
   return vec3(block) * kBlockEdge + vec3(local) * (kBlockEdge / float(samples - 1));
 }
 
+// Steps that fill the cache from a position, voxels of the index and growth, from those of a brick that is not coarser than the
+// cache takes voxels to be.
+NPH_FN vec2 stepsFrom(vec3 position, vec2 steps) {
+  return vec2(steps.x * voxelAt(position, params.shadow.w) / params.shadow.w, steps.y);
+}
+
 // The whole column from a position to a light, as the cache keeps it.
 NPH_FN float columnToCache(int light, vec3 position, NPH_INOUT(vec4) cost) {
   Lighting l = lightingFrom(light, position);
   // Far octaves see through columns that hide the first order altogether: none is given up on.
-  float column = columnDensity(position, l.toLightIndex, l.reach, 1e30f, vec2(params.cacheSteps), 0.5f, cost);
+  float column = columnDensity(position, l.toLightIndex, l.reach, 1e30f, stepsFrom(position, vec2(params.cacheSteps)), 0.5f, cost);
   return 1.0f / (1.0f + params.cache.y * column);
 }
 
@@ -27,13 +33,14 @@ NPH_FN vec3 skyDirection(int i) {
 // (the phase function's and the sky's first two bands of spherical harmonics): sky0.rgb + dot(sky1.xyz, ray) · sky0.rgb.
 NPH_FN void skyToCache(vec3 position, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NPH_INOUT(vec4) cost) {
   float enough = columnThatHides(1e-3f);  // of a sky that comes from all sides, less is not seen
+  vec2 steps = stepsFrom(position, vec2(params.cacheSteps.z, params.cacheSteps.w));
   vec3 even = vec3(0.0f);
   vec3 slope = vec3(0.0f);
   for (int i = 0; i < kSkyDirections; ++i) {
     vec3 toSky = skyDirection(i);
     vec3 toSkyIndex = toSky.x * vec3(params.indexFromWorldX) + toSky.y * vec3(params.indexFromWorldY) +
                       toSky.z * vec3(params.indexFromWorldZ);
-    float column = columnDensity(position, toSkyIndex, 3.0e38f, enough, vec2(params.cacheSteps.z, params.cacheSteps.w), 0.5f, cost);
+    float column = columnDensity(position, toSkyIndex, 3.0e38f, enough, steps, 0.5f, cost);
     float extinction = 1.0f;
     float scattering = 1.0f / float(kSkyDirections);
     float g = phaseMeanCosine(vec3(params.phase));

@@ -103,7 +103,7 @@ NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
       size = float(edge);
       float way = wayOut(position, course, corner, kBrickEdge * size);
       tEnd = min(tFar, t + margin + max(0.0f, way));
-      float steps = ceil((tEnd - t) / stepIn(word, params.sigmaS.w * size * voxel, max(before.x, max(before.y, before.z))));
+      float steps = ceil((tEnd - t) / stepIn(word, params.sigmaS.w * max(params.shadow.z, size) * voxel, max(before.x, max(before.y, before.z))));
       dt = (tEnd - t) / max(steps, 1.0f);
       if (wordIsEmpty(word)) {
         checkSkipped(origin, direction, t + 2.0f * margin, min(tEnd, t + max(0.0f, way)) - margin, params.sigmaS.w * voxel, result.cost);

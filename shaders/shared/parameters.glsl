@@ -45,7 +45,8 @@ struct MarchParameters {
   vec4 sigmaT;       // per unit density per world unit
   vec4 sigmaS;       // w: step, voxels
   vec4 octaves;      // a, b, c
-  vec4 shadow;       // x: first step towards a light, voxels. y: growth from each step to the next, at least 1
+  vec4 shadow;       // x: first step towards a light, voxels. y: growth from each step to the next, at least 1. z: voxels of the
+                     // index that count as one at least, for steps; w: the same, for the light cache
   vec4 phase;        // the phase function's lobes: x: g of the first, y: of the second, z: share of the second
   vec4 powder;       // x: strength, 0: off. y: 1 / largest density
   vec4 height;       // of an index position in the cloud, 0 at its base, 1 at its top: dot(xyz, position) + w

@@ -108,26 +108,26 @@ NPH_FN float densityAndExit(vec3 position, Course course, NPH_OUT(float) toExit)
   return 0.0f;
 }
 
-// Edge of a voxel of the brick at a position, in voxels of the index; 1 in an empty one. NPH_LEVELS is true where bricks are of
-// several levels.
-NPH_FN float voxelAt(vec3 position) {
+// Edge of what counts as a voxel at a position, in voxels of the index: `least`, or the brick's voxel where that is longer.
+// NPH_LEVELS is true where bricks are of several levels.
+NPH_FN float voxelAt(vec3 position, float least) {
   ivec3 brick = ivec3(floor(position / kBrickEdge));
-  if (!NPH_LEVELS || isOutside(brick)) return 1.0f;
+  if (!NPH_LEVELS || isOutside(brick)) return least;
   uvec2 word = brickWord(brick);
-  return wordIsEmpty(word) ? 1.0f : float(wordEdge(word));
+  return wordIsEmpty(word) ? least : max(least, float(wordEdge(word)));
 }
 
 // ∫ ρ ds in world units from `origin` along `direction` (index units per world unit) over at most `reach` world units, by
 // steps that grow with the way gone: what lies far from a point shades its neighbours alike. Empty bricks are passed without
-// reading them, on the same steps. `steps` is the first one's length, voxels of the brick at the origin, and the growth of each over the one before. Gives
-// up, with what it has, once it exceeds `enough`.
+// reading them, on the same steps. `steps` is the first one's length, voxels of the index, and the growth of each over the
+// one before. Gives up, with what it has, once it exceeds `enough`.
 NPH_FN float columnDensity(vec3 origin, vec3 direction, float reach, float enough, vec2 steps, float start,
                            NPH_INOUT(vec4) cost) {
   float tNear = 0.0f;
   float tFar = 0.0f;
   if (!intersectBox(origin, direction, vec3(params.boxMin), vec3(params.boxMax), tNear, tFar)) return 0.0f;
   tFar = min(tFar, reach);
-  float dt = steps.x * voxelAt(origin) / length(direction);
+  float dt = steps.x / length(direction);
   float growth = steps.y;
   Course course = courseOf(direction);
   float column = 0.0f;

@@ -144,7 +144,7 @@ TEST(Scene, WrittenAndReadIsTheSame) {
         "lights:\n  - sun: { to_light: [1, 2, 3], irradiance: [0.1, 0.2, 0.3] }\n"
         "  - sun: { to_light: [1e-200, 0, 3e-200] }\n  - point: { position: [1, 2, 3], intensity: 0.1 }\n"
         "environment: { constant: 0.7, show: true }\nbackground: { top: 0.1 }\nmarch: { step: 0.3, adaptive: "
-        "false, precision: r8, level_pixels: 0.5, check_skips: true, light_cache: false, cache: 3.5, "
+        "false, precision: r8, level_pixels: 0.7, step_pixels: 0.3, check_skips: true, light_cache: false, cache: 3.5, "
         "sky_cache: 8, cache_near: "
         "2, "
         "cache_near_steps: 1, give_up: 0.01, cache_depth: 0.7 }\n"}) {

@@ -78,6 +78,7 @@ const std::map<std::string, std::string> kLabels{
     {"march.check_skips", "check what is skipped"},
     {"march.precision", "precision"},
     {"march.level_pixels", "coarser below"},
+    {"march.step_pixels", "steps as of"},
 };
 
 void collectKeys(const yaml::Node& node, const std::string& name, std::set<std::string>& keys) {

@@ -31,7 +31,7 @@ MarchParameters parametersFor(float left, float right, float sigmaT) {
   p.sigmaT = vec4(vec3(sigmaT), 0.0f);
   p.sigmaS = vec4(vec3(sigmaT), 0.5f);
   p.octaves = vec4(0.5f, 0.5f, 0.5f, 0.0f);
-  p.shadow = vec4(1.0f, 1.0f, 0.0f, 0.0f);
+  p.shadow = vec4(1.0f, 1.0f, 1.0f, 1.0f);
   p.environment = vec4(0.0f, 0.0f, 0.0f, 1e-6f);
   p.walk = vec4(1e-4f, 1.0f, 0.0f, 0.0f);
   p.brickCount = ivec4(26, 26, 26, 0);
@@ -65,7 +65,7 @@ TEST(SharedMarch, SingleScatteringBackLitSlabHasItsClosedForm) {
   p.lights[0] = {vec4(1.0f, 0.0f, 0.0f, float(kLightSun)), vec4(1.0f, 0.0f, 0.0f, 0.0f),
                  vec4(2.0f, 3.0f, 4.0f, 0.0f)};
   p.sigmaS.w = 0.05f;
-  p.shadow = vec4(0.05f, 1.0f, 0.0f, 0.0f);
+  p.shadow = vec4(0.05f, 1.0f, 1.0f, 1.0f);
   March<FullBricks> march{p, &bricks};
   const auto result = march.marchRay(vec2(0.0f), 0.5f, 1u, 0u);
   const double depth = 0.03 * 64.0;
@@ -140,7 +140,7 @@ TEST(SharedMarch, OctavesSeeTheLightThroughAPowerOfTheExtinction) {
   p.counts.x = 1;
   p.lights[0] = {vec4(1.0f, 0.0f, 0.0f, float(kLightSun)), vec4(1.0f, 0.0f, 0.0f, 0.0f), vec4(1.0f)};
   p.sigmaS.w = 0.05f;
-  p.shadow = vec4(0.05f, 1.0f, 0.0f, 0.0f);
+  p.shadow = vec4(0.05f, 1.0f, 1.0f, 1.0f);
   p.counts.y = 2;
   p.octaves = vec4(0.5f, 0.4f, 1.0f, 0.0f);
   const double x = 2.0;
@@ -175,7 +175,7 @@ TEST(SharedMarch, ChordLightsAHomogeneousBallAsMarchingDoes) {
   p.boxMax.y = p.boxMax.z = 204.0f;
   p.counts.x = 1;
   p.lights[0] = {vec4(0.0f, 0.0f, 1.0f, float(kLightSun)), vec4(0.0f, 0.0f, 1.0f, 0.0f), vec4(1.0f)};
-  p.shadow = vec4(0.05f, 1.0f, 0.0f, 0.0f);
+  p.shadow = vec4(0.05f, 1.0f, 1.0f, 1.0f);
   March<FullBricks> march{p, &bricks};
   const double marched = double{march.marchRay(vec2(0.0f), 0.5f, 1u, 0u).radiance.x};
   march.params.chordCentre = vec4(104.0f, 104.0f, 104.0f, 1.0f);

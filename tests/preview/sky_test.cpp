@@ -161,7 +161,7 @@ TEST(SharedSky, EveryKindLightsAThinMediumByItsMean) {
     p.sigmaT = vec4(vec3(1e-7f), 0.0f);
     p.sigmaS = vec4(vec3(1e-7f), 0.5f);
     p.phase = vec4(0.0f);
-    p.shadow = vec4(4.0f, 2.0f, 0.0f, 0.0f);
+    p.shadow = vec4(4.0f, 2.0f, 1.0f, 1.0f);
     p.environment.w = 1e-6f;
     p.walk = vec4(1e-4f, 1.0f, 0.0f, 0.0f);
     p.brickCount = ivec4(26, 26, 26, 0);
