@@ -152,8 +152,8 @@ enum class AtlasPrecision { automatic, r8, r16f, r32f };
 inline constexpr AtlasPrecision kAtlasPrecisions[] = {AtlasPrecision::automatic, AtlasPrecision::r8,
                                                       AtlasPrecision::r16f, AtlasPrecision::r32f};
 
-/// Steps and the light cache's spacings in voxels of the level being read, or in what covers stepPixels
-/// pixels where that is longer.
+/// Steps and the light cache's spacings in voxels of the level being read; those of the view and of the cache
+/// in what covers stepPixels pixels, where that is longer.
 struct MarchSettings {
   double stepVoxels = 0.5;
   double shadowStepVoxels = 1.0;  // the first step towards a light
@@ -169,7 +169,7 @@ struct MarchSettings {
   double giveUp = 1e-4;           // transmittance below which a ray ends, in (0, 0.1]
   // No key of files; moving pictures set it: light comes from that volume however thick a voxel is.
   bool alwaysCached = false;
-  bool checkSkips = false;        // reads what was skipped as well, and counts what that would have changed
+  bool checkSkips = false;  // reads what was skipped as well, and counts what that would have changed
   AtlasPrecision precision = AtlasPrecision::automatic;
   double levelPixels = 0.5;  // voxels that cover at most so many come from coarser levels; 0: none do
   double stepPixels = 1.0;   // steps take voxels to cover at least so many; 0: whatever they cover

@@ -165,7 +165,8 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
   if (scene.stage != Stage{}) text += textOf(scene.stage);
   text += "look: " + nameOf(scene.look) + "\n";
   text +=
-      "# Steps in voxels, taken to cover step_pixels at least; each towards a light is shadow_growth times "
+      "# Steps in voxels, in the view taken to cover step_pixels at least; each towards a light is "
+      "shadow_growth times "
       "the one before."
       "\n# adaptive: longer where the medium is thin. light_cache: light from samples `cache` and "
       "`sky_cache` voxels apart,"

@@ -92,7 +92,7 @@ NPH_FN float columnTowards(vec3 position, vec3 direction, float reach, float eno
   if (params.chordRadii.w > 0.0f)
     return params.chordCentre.w *
            ellipsoidChord(position, direction, vec3(params.chordCentre), vec3(params.chordRadii), reach);
-  vec2 steps = vec2(params.shadow.x * voxelAt(position, params.shadow.z), params.shadow.y);
+  vec2 steps = vec2(params.shadow.x * voxelAt(position, 1.0f), params.shadow.y);
   return columnDensity(position, direction, reach, enough, steps, start, cost);
 }
 

@@ -46,7 +46,7 @@ struct MarchParameters {
   vec4 sigmaS;       // w: step, voxels
   vec4 octaves;      // a, b, c
   vec4 shadow;       // x: first step towards a light, voxels. y: growth from each step to the next, at least 1. z: voxels of the
-                     // index that count as one at least, for steps; w: the same, for the light cache
+                     // index that count as one at least, for the view's steps; w: the same, for the light cache
   vec4 phase;        // the phase function's lobes: x: g of the first, y: of the second, z: share of the second
   vec4 powder;       // x: strength, 0: off. y: 1 / largest density
   vec4 height;       // of an index position in the cloud, 0 at its base, 1 at its top: dot(xyz, position) + w
