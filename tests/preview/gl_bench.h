@@ -41,6 +41,7 @@ inline std::vector<float> transmittanceOnGpu(const BrickVolume& bricks, const Ca
   view.camera = camera;
   view.scene.lights.clear();
   view.scene.march.stepVoxels = 0.1;
+  view.scene.march.stepPixels = 0.0;
   view.scene.march.adaptive = false;
   view.medium.sigmaS = {sigmaT, sigmaT, sigmaT};
   MarchPass pass(Filter::exact);
