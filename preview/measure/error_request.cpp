@@ -86,6 +86,7 @@ std::vector<MarchCandidate> marchCandidates(const Scene& scene) {
     setting.march.adaptive = true;
     setting.march.lightCache = false;
     setting.march.cacheDepth = std::numeric_limits<double>::max();
+    setting.march.stepPixels = 0.0;  // steps are as long as they say
     if (step < kCoarseStep) setting.march.levelPixels = 0.0;
     return candidates.emplace_back(MarchCandidate{setting, least, most}).setting.march;
   };

@@ -39,6 +39,7 @@ PictureRequest requestOf(const StabilityOptions& options, const StabilityWay& wa
 
 ViewedScene viewFor(const StabilityWay& way, const StabilityCase& on) {
   ViewedScene view = on.view;
+  view.scene.march.stepPixels = 0.0;  // steps are as long as the case says
   if (way.lightCache) {
     view.scene.march.lightCache = *way.lightCache;
     view.scene.march.cacheDepth = std::numeric_limits<double>::max();
