@@ -60,11 +60,16 @@ std::vector<CostFront> costFronts(const std::vector<CostPoint>& points) {
   std::vector<CostFront> fronts;
   for (const auto& [error, cost] : kFronts) {
     std::vector<CostAndError> costs;
-    for (const CostPoint& p : points) costs.push_back({costOf(p, cost), errorOf(p, error)});
+    std::vector<size_t> places;
+    for (size_t i = 0; i < points.size(); ++i) {
+      // A bake that misses all of the depth somewhere is cheap, and worth nothing.
+      if (points[i].depthLargest >= 1.0) continue;
+      costs.push_back({costOf(points[i], cost), errorOf(points[i], error)});
+      places.push_back(i);
+    }
     CostFront front{error, cost, paretoFront(costs, kWorthNaming), 0};
-    // A bake that misses all of the depth somewhere is cheap, and worth nothing.
-    std::erase_if(front.points, [&](size_t i) { return points[i].depthLargest >= 1.0; });
     front.knee = kneeOf(costs, front.points);
+    for (size_t& point : front.points) point = places[point];
     fronts.push_back(front);
   }
   return fronts;

@@ -14,7 +14,7 @@ using glm::dvec3;
 
 // Powers of two, so that clouds at different places may lie on one lattice exactly.
 constexpr double kVoxel = 0.0625;
-constexpr double kRadius = 12.0;        // voxels
+constexpr double kRadius = 12.0;  // voxels
 constexpr double kPi = std::numbers::pi;
 
 std::string exact(double value) {

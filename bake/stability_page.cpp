@@ -124,8 +124,9 @@ std::string bakeStabilityPage(const BakeStability& result) {
          "`refused`: the recipe or its bake is, with a sentence that stands below. `empty`: no voxel is "
          "above 0. "
          "`BAD` would mean a\n"
-         "value that is not finite or negative, or one that its interval leaves out; there is none.\n\n"
-         "- **Voxels**: relative RMSE against a formula (remaps), against the same recipe about the origin "
+         "value that is not finite or negative, or one that its interval leaves out"
+      << (badBakes(result).empty() ? "; there is none.\n\n" : ".\n\n")
+      << "- **Voxels**: relative RMSE against a formula (remaps), against the same recipe about the origin "
          "or "
          "at scale 1\n"
          "  (distances, scales), else against each voxel evaluated alone, its place in double precision. "

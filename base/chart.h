@@ -31,14 +31,16 @@ struct ChartSeries {
   bool line = false;
 };
 
-/// One panel with logarithmic axes; `note` is a second line of its title. Points that are not above 0 on both axes are left out by gnuplot.
+/// One panel with logarithmic axes; `note` is a second line of its title. Points that are not above 0 on both
+/// axes are left out by gnuplot.
 struct ChartPanel {
   std::string title, xLabel, yLabel;
   std::vector<ChartSeries> series;
   std::string note{};
 };
 
-/// The gnuplot script that draws the panels, two in a row, into `output` with a terminal ("svg" or "pngcairo").
+/// The gnuplot script that draws the panels, two in a row, into `output` with a terminal ("svg" or
+/// "pngcairo").
 std::string gnuplotScript(const std::vector<ChartPanel>& panels, const std::string& terminal,
                           const std::string& output);
 

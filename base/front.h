@@ -10,8 +10,8 @@ struct CostAndError {
   double cost = 0.0, error = 0.0;
 };
 
-/// What a dearer point has to take off the error, as a share of it, to be shown on a chart's front: less is not
-/// worth naming.
+/// What a dearer point has to take off the error, as a share of it, to be shown on a chart's front: less is
+/// not worth naming.
 inline constexpr double kWorthNaming = 0.02;
 
 /// Indices of the points that no other beats in both, by growing cost and falling error. Of equal points the

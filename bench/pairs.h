@@ -16,7 +16,8 @@ void compareFogBall(Table& table);
 void compareSparseness(Table& table);
 void measurePeakMemory(Table& table, const std::string& bakeProgram);
 
-/// Splatting against OpenVDB's FrustumRasterizer; ten million particles; time and memory as particles grow in number.
+/// Splatting against OpenVDB's FrustumRasterizer; ten million particles; time and memory as particles grow in
+/// number.
 void compareSplat(Table& table);
 
 }  // namespace nephele::bench

@@ -96,7 +96,7 @@ struct ParticleSystem {
   std::vector<std::string> writePoints;  // beside each frame: csv, ply, vdb
   double massTolerance = 1.0;            // largest share of the mass that a grid may lose
   glm::dvec3 boxMin{0.0}, boxMax{0.0};   // every frame's active box; none where equal
-  bool stableBox = false;  // every frame's active box is that of all frames
+  bool stableBox = false;                // every frame's active box is that of all frames
   int64_t checkpointEvery = 24;          // frames; 0: none
 
   bool hasBox() const { return boxMin != boxMax; }

@@ -250,7 +250,10 @@ Scene sceneNamed(const std::string& name) {
 
 Scene openScene(const std::string& path, std::optional<double> stepVoxels) {
   Scene scene = path.empty() ? defaultScene() : sceneNamed(path);
-  if (stepVoxels) scene.march.stepVoxels = *stepVoxels;
+  if (stepVoxels) {
+    scene.march.stepVoxels = *stepVoxels;
+    scene.march.stepPixels = 0.0;  // as long as was asked for, whatever voxels cover
+  }
   return scene;
 }
 

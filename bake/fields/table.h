@@ -47,8 +47,8 @@ struct Parameter {
   std::vector<std::string> choices{};  // type == choice
 };
 
-/// Something that the grid cannot hold: an octave or a whole noise that was left out or weakened for it, a warp
-/// that makes its input finer, a shape that is thin.
+/// Something that the grid cannot hold: an octave or a whole noise that was left out or weakened for it, a
+/// warp that makes its input finer, a shape that is thin.
 struct BandLimitNote {
   std::string field;
   int octave = 0;           // from 0

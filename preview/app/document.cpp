@@ -58,11 +58,13 @@ void Document::wish() {
 }
 
 void Document::open(const std::string& path) {
+  otherHeat_ = false;
   pending_ = VolumeKey{path, {}, heat_};
   wish();
 }
 
 void Document::chooseGrid(const std::string& grid) {
+  otherHeat_ = false;
   pending_ = VolumeKey{keyOf(timeline_.shown()).path, grid, heat_};
   wish();
 }
@@ -70,7 +72,10 @@ void Document::chooseGrid(const std::string& grid) {
 void Document::chooseHeat(const std::string& grid) {
   heat_ = grid;
   otherHeat_ = true;
-  pending_ = VolumeKey{keyOf(timeline_.shown()).path, grid_, heat_};
+  if (pending_)
+    pending_->heat = heat_;
+  else
+    pending_ = VolumeKey{keyOf(timeline_.shown()).path, grid_, heat_};
   wish();
 }
 

@@ -78,7 +78,7 @@ class Lane {
   void chooseScale(const Film& film);
 
   LaneRequest request_;
-  int divisor_ = 2;  // of the coarse picture's sides; follows from the time that it takes
+  int divisor_ = 2;             // of the coarse picture's sides; follows from the time that it takes
   double quickSeconds_ = 0.02;  // that the last one took; before any, about what it should take
   bool quickNeeded_ = false;
   bool scaleKnown_ = false;  // for the view that is shown

@@ -52,7 +52,8 @@ bool sameShape(const MarchParameters& a, const MarchParameters& b) {
 bool sameColumns(const MarchParameters& a, const MarchParameters& b, size_t light) {
   return same(a.lights[light].direction, b.lights[light].direction) &&
          same(a.lights[light].directionIndex, b.lights[light].directionIndex) &&
-         same(a.cacheSteps, b.cacheSteps) && same(a.cache.x, b.cache.x) && same(a.cache.y, b.cache.y);
+         same(a.cacheSteps, b.cacheSteps) && same(a.shadow.w, b.shadow.w) && same(a.cache.x, b.cache.x) &&
+         same(a.cache.y, b.cache.y);
 }
 
 /// Everything but the camera, the lights, the view's steps, the seed and the stage.
@@ -62,7 +63,8 @@ bool sameSky(MarchParameters a, MarchParameters b) {
     std::memset(static_cast<void*>(&p->stage), 0, sizeof *p - offsetof(MarchParameters, stage));
     std::memset(static_cast<void*>(p->lights), 0, sizeof p->lights);
     p->sigmaS.w = p->environment.w = 0.0f;
-    p->shadow = p->walk = p->cache = glm::vec4(0.0f);
+    p->shadow = glm::vec4(0.0f, 0.0f, 0.0f, p->shadow.w);
+    p->walk = p->cache = glm::vec4(0.0f);
     p->counts.x = p->counts.w = p->brickCount.w = 0;
   }
   return same(a, b);

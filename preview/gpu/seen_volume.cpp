@@ -50,8 +50,8 @@ std::shared_ptr<const BrickAtlas> SeenVolume::make(const ViewedScene& view, int 
   ViewedScene counted = view;
   if (moves_)
     counted.scene.march = movingMarch(counted.scene.march, 1.0);  // asks for all that one at rest asks for
-  counted.scene.march.stepPixels =
-      0.0;  // which voxels the bricks will have is not known yet: at most so many bytes
+  // Which voxels the bricks will have is not known yet: at most so many bytes.
+  counted.scene.march.stepPixels = 0.0;
   options.blockBytes =
       LightCache::blockBytes(filter_, marchParameters(counted, bricks_, width, height, 0, false));
   if (!heat_) heat_ = atlasOfTemperatures(bricks_, filter_);

@@ -57,7 +57,8 @@ ViewedScene viewAt(const ViewedScene& given, const Station& station) {
   scene.powder.on = false;
   scene.lightTransmittance = LightTransmittance::marched;
   scene.march.lightCache = false;  // each view has another sun
-  scene.march.levelPixels = scene.march.stepPixels = 0.0;   // the small pictures stand for large ones, which resolve every voxel
+  scene.march.levelPixels = scene.march.stepPixels =
+      0.0;  // the small pictures stand for large ones, which resolve every voxel
   return view;
 }
 

@@ -39,7 +39,8 @@ PictureRequest requestOf(const StabilityOptions& options, const StabilityWay& wa
 
 ViewedScene viewFor(const StabilityWay& way, const StabilityCase& on) {
   ViewedScene view = on.view;
-  view.scene.march.stepPixels = 0.0;  // steps are as long as the case says
+  // Steps are as long as the case says, and read what it holds.
+  view.scene.march.stepPixels = view.scene.march.levelPixels = 0.0;
   if (way.lightCache) {
     view.scene.march.lightCache = *way.lightCache;
     view.scene.march.cacheDepth = std::numeric_limits<double>::max();

@@ -145,7 +145,9 @@ std::vector<CostAndError> costsOf(const std::vector<Measured>& points) {
 
 }  // namespace
 
-std::vector<size_t> paretoFront(const std::vector<Measured>& points) { return paretoFront(costsOf(points)); }
+std::vector<size_t> paretoFront(const std::vector<Measured>& points) {
+  return paretoFront(costsOf(points), kWorthNaming);
+}
 
 size_t kneeOf(const std::vector<Measured>& points, const std::vector<size_t>& front) {
   return kneeOf(costsOf(points), front);
@@ -216,7 +218,7 @@ SweepResult sweep(const BrickVolume& bricks, const ViewedScene& given, const Swe
     ++viewsDone;
   }
   result.all = overViews(result.single, result.settings.size(), viewsDone);
-  result.front = paretoFront(costsOf(result.all), kWorthNaming);
+  result.front = paretoFront(result.all);
   result.knee = kneeOf(result.all, result.front);
   return result;
 }

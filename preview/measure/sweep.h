@@ -80,8 +80,9 @@ std::vector<SweepView> viewsFor(const ViewedScene& view);
 /// driver's start and with shaders built and the view's light cache filled.
 SweepResult sweep(const BrickVolume& bricks, const ViewedScene& view, const SweepOptions& options);
 
-/// Indices of the points that no other beats in both time and error, by time; and of the knee among them: the
-/// point farthest below the line between the front's ends, both axes logarithmic.
+/// Indices of the points that no other beats in both time and error, by time, as far as what they gain is
+/// worth naming (kWorthNaming); and of the knee among them: the point farthest below the line between the
+/// front's ends, both axes logarithmic.
 std::vector<size_t> paretoFront(const std::vector<Measured>& points);
 size_t kneeOf(const std::vector<Measured>& points, const std::vector<size_t>& front);
 

@@ -34,7 +34,7 @@ NPH_FN float lightColumn(int light, vec3 position, vec3 direction, float reach, 
     }
   }
   texel.z += float(light * params.cacheShape.z);
-  // Below the least half, nothing is seen.
+  // Below the least half, or byte, nothing is seen.
   float column = (1.0f / max(cachedColumn(max(texel, vec3(0.0f))), 6e-8f) - 1.0f) / params.cache.y;
   if (NPH_NEAR) {
     // The steps' ends lie at the squares of even shares of the way.

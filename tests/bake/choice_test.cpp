@@ -193,5 +193,16 @@ TEST(CostFronts, LeaveOutWhatIsHardlyBetterAndWhatMissesAll) {
   EXPECT_EQ(int(fronts[0].cost), int(CostKind::file));
 }
 
+TEST(CostFronts, WhatMissesADepthShadowsNothing) {
+  std::vector<CostPoint> points = {pointOf("voxel size", 1.0, kAllOctaves, 1000, 0.01),
+                                   pointOf("voxel size", 2.0, kAllOctaves, 100, 0.1),
+                                   pointOf("cutoff", 1.0, kAllOctaves, 10, 1.0)};
+  points[2].densityLargest = 0.001;  // less than the others' errors, for less
+  for (const CostFront& front : costFronts(points)) {
+    if (front.cost != CostKind::file) continue;
+    EXPECT_EQ(front.points, (std::vector<size_t>{1, 0}));
+  }
+}
+
 }  // namespace
 }  // namespace nephele::test

@@ -144,7 +144,8 @@ TEST(Scene, WrittenAndReadIsTheSame) {
         "lights:\n  - sun: { to_light: [1, 2, 3], irradiance: [0.1, 0.2, 0.3] }\n"
         "  - sun: { to_light: [1e-200, 0, 3e-200] }\n  - point: { position: [1, 2, 3], intensity: 0.1 }\n"
         "environment: { constant: 0.7, show: true }\nbackground: { top: 0.1 }\nmarch: { step: 0.3, adaptive: "
-        "false, precision: r8, level_pixels: 0.7, step_pixels: 0.3, check_skips: true, light_cache: false, cache: 3.5, "
+        "false, precision: r8, level_pixels: 0.7, step_pixels: 0.3, check_skips: true, light_cache: false, "
+        "cache: 3.5, "
         "sky_cache: 8, cache_near: "
         "2, "
         "cache_near_steps: 1, give_up: 0.01, cache_depth: 0.7 }\n"}) {
@@ -212,8 +213,7 @@ TEST(Scene, Refusals) {
       {"octaves: { count: many }", "s:1:19: error: 'count' must be a whole number, found 'many'"},
       {"environment: { show: 1 }", "s:1:22: error: 'show' must be true or false, found '1'"},
       {"stage: { checker: 0 }", "s:1:19: error: 'checker' must be greater than 0 and at most 1e+15, found 0"},
-      {"stage: { grey_ball: { edge: 1 } }",
-       "s:1:23: error: unknown key 'edge' in 'grey_ball'"},
+      {"stage: { grey_ball: { edge: 1 } }", "s:1:23: error: unknown key 'edge' in 'grey_ball'"},
       {"look: pretty", "s:1:7: error: 'look' must be one of physical, report, found 'pretty'"},
       {"march: { step: 0 }", "s:1:16: error: 'step' must be 0.01 to 100, found 0"}};
   for (const auto& [text, sentence] : cases) EXPECT_EQ(complaintOf(text), sentence) << text;
