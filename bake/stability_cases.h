@@ -1,4 +1,4 @@
-// The table of recipes at which bakes are held to truth one axis at a time. Depends on GLM alone.
+// The table of recipes at which bakes are held to truth one axis at a time. Depends on GLM and base.
 #pragma once
 
 #include <functional>

@@ -20,6 +20,7 @@ constexpr GLuint kBlocksBinding = 1, kCostBinding = 2, kColumnsImage = 0, kSkyIm
 constexpr GLint kFirstBlockLocation = 0, kLightLocation = 1;
 constexpr int kGroupSize = 32;
 constexpr int kSky = -1;
+constexpr int kSkyHalves = 2;  // even light and its slope, beside each other
 constexpr double kPieceSeconds = 0.02;
 constexpr uint32_t kFirstPieceBlocks = 64;
 
@@ -93,14 +94,14 @@ const GlProgram& LightCache::programFor(const MarchParameters& parameters) {
 }
 
 uint64_t LightCache::blockBytes(Filter filter, const MarchParameters& parameters) {
-  const uint64_t channelBytes = filter == Filter::exact ? sizeof(float) : sizeof(float) / 2;
+  const bool floats = filter == Filter::exact;
   const auto cube = [](int samples) { return static_cast<uint64_t>(samples * samples * samples); };
-  constexpr uint64_t kSkyChannels = 8, kIndexBytes = sizeof(uint32_t) + sizeof(glm::ivec4);
+  constexpr uint64_t kIndexBytes = sizeof(uint32_t) + sizeof(glm::ivec4);
   const uint64_t columns = parameters.cache.x > 0.0f
                                ? cube(parameters.cacheShape.x) * static_cast<uint64_t>(parameters.counts.x)
                                : 0;
-  return kIndexBytes + columnFormat(filter == Filter::exact, parameters.cache.x).bytes * columns +
-         channelBytes * kSkyChannels * cube(parameters.cacheShape.y);
+  return kIndexBytes + columnFormat(floats, parameters.cache.x).bytes * columns +
+         kSkyHalves * skyFormat(floats).bytes * cube(parameters.cacheShape.y);
 }
 
 void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameters) {
@@ -125,7 +126,7 @@ void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameter
                  static_cast<uint64_t>(size.z);
     return texture;
   };
-  constexpr int kSkyHalves = 2, kUnused = 2;  // samples along the edge of what is bound and never read
+  constexpr int kUnused = 2;  // samples along the edge of what is bound and never read
   const bool columns = parameters.cache.x > 0.0f && parameters.counts.x > 0;
   columnKind_ = columns ? parameters.cache.x : 0.0f;
   columns_ = make(columns ? parameters.cacheShape.x : kUnused, columns ? parameters.counts.x : 1,
