@@ -1,4 +1,4 @@
-// The search behind a tolerance. Depends on choice.h, trial.h, base, volume/difference.h.
+// The search behind a tolerance. Depends on choice.h, trial.h, base, volume/chords.h.
 #include "bake/choice.h"
 
 #include <algorithm>
@@ -7,21 +7,25 @@
 
 #include "bake/trial.h"
 #include "base/figures.h"
-#include "volume/difference.h"
+#include "volume/chords.h"
 
 namespace nephele {
 namespace {
 
-// The first bake has this many voxels along the longest side, and this many along the shortest, so that a
+// The first look has this many voxels along the longest side, and this many along the shortest, so that a
 // thin sheet is seen at all.
 constexpr double kFirstAlongLongest = 16.0, kFirstAlongShortest = 2.0;
 // Each bisection divides the ratio of two sizes by its square root: three leave 2^(1/8), 30% of the voxels.
 constexpr int kBisections = 3;
-// A reference of more active voxels is not baked: it and its bricks take 3 GB.
-constexpr double kMostVoxels = 2.5e8;
+// Of more active voxels nothing is chosen: they take 10 GB in memory.
+constexpr double kMostVoxels = 2e9;
+// Particles are baked to be measured; a reference of more active voxels takes 3 GB with its bricks.
+constexpr double kMostBaked = 2.5e8;
+// A reference has as many times the voxels.
+constexpr double kEightTimes = 8.0;
 constexpr uint64_t kSearchSeed = 0, kConfirmingSeed = 0x636f6e66;
-// What confirming makes of voxels that do not hold: 2^(-1/4), 1.7 times as many.
-constexpr double kFiner = 0.8408964152537145;
+// What confirming makes of voxels that do not hold: 2^(-1/8), one such step.
+constexpr double kFiner = 0.9170040432046712;
 
 std::string shown(double value) { return number(value, 4); }
 
@@ -33,25 +37,72 @@ Asset lookOf(const Asset& asset, double voxelSize, Precision precision, int octa
   return look;
 }
 
-/// The bakes of all frames.
-using Frames = std::vector<TrialBake>;
+/// What all frames' rays see of one look.
+struct Seen {
+  std::vector<std::vector<double>> depths;  // by frame
+  double voxels = 0.0;                      // of the frame that has most
 
-uint64_t mostActive(const Frames& frames) {
-  uint64_t most = 0;
-  for (const TrialBake& bake : frames) most = std::max(most, bake.voxelsActive);
-  return most;
-}
+  bool nothing() const {
+    for (const std::vector<double>& frame : depths)
+      for (const double depth : frame)
+        if (depth > 0.0) return false;
+    return true;
+  }
+};
 
-/// Over the largest depth of all frames: a sequence is seen under one light, whatever its first frame holds.
-double errorOf(const Frames& reference, const Frames& look, uint64_t rays, uint64_t seed) {
+/// The largest difference and the largest depth of the reference, of all frames: a sequence is seen under one
+/// light, whatever its first frame holds.
+DepthDifference differenceOf(const Seen& reference, const Seen& look) {
   DepthDifference worst;
-  for (size_t n = 0; n < look.size(); ++n) {
-    const DepthDifference d = depthDifference(reference[n].bricks, look[n].bricks, rays, seed);
+  for (size_t n = 0; n < look.depths.size(); ++n) {
+    const DepthDifference d = nephele::differenceOf(reference.depths[n], look.depths[n]);
     worst.largest = std::max(worst.largest, d.largest);
     worst.largestA = std::max(worst.largestA, d.largestA);
   }
-  return worst.relative();
+  return worst;
 }
+
+double errorOf(const Seen& reference, const Seen& look) { return differenceOf(reference, look).relative(); }
+
+/// The same rays for every look of an asset.
+class Rays {
+ public:
+  Rays(const TrialBaker& baker, uint64_t count, uint64_t seed) : baker_(&baker) {
+    for (size_t n = 0; n < baker.frameCount(); ++n) chords_.push_back(baker.chords(n, count, seed));
+  }
+
+  /// The rays in groups of at most `count`.
+  std::vector<Rays> groups(uint64_t count) const {
+    std::vector<Rays> all;
+    uint64_t most = 0;
+    for (const Chords& frame : chords_) most = std::max(most, uint64_t(frame.lines.size()));
+    for (uint64_t first = 0; first < most; first += count) {
+      Rays group(*this);
+      for (Chords& frame : group.chords_) {
+        const auto begin = frame.lines.begin(), end = frame.lines.end();
+        const auto from = begin + std::min(std::ptrdiff_t(first), end - begin),
+                   to = begin + std::min(std::ptrdiff_t(first + count), end - begin);
+        frame.lines = std::vector<Chord>(from, to);
+      }
+      all.push_back(std::move(group));
+    }
+    return all;
+  }
+
+  Seen see(const Asset& look) const {
+    Seen seen;
+    for (size_t n = 0; n < chords_.size(); ++n) {
+      TrialBaker::Depths found = baker_->depths(n, look, chords_[n]);
+      seen.depths.push_back(std::move(found.depths));
+      seen.voxels = std::max(seen.voxels, found.voxels);
+    }
+    return seen;
+  }
+
+ private:
+  const TrialBaker* baker_;
+  std::vector<Chords> chords_;
+};
 
 class Search {
  public:
@@ -64,9 +115,11 @@ class Search {
 
   Choice run() {
     const auto start = std::chrono::steady_clock::now();
+    size_ = firstSize();
+    rays_.emplace(baker_, kChoiceRays, kSearchSeed);
     descend();
     bisect();
-    choice_.asset = lookOf(asset_, size_, Precision::single, kAllOctaves);
+    choice_.asset = wholeLook(size_);
     if (!(asset_.precisionGiven && asset_.precision == Precision::single)) takeHalf();
     takeFewerOctaves();
     confirm();
@@ -78,17 +131,12 @@ class Search {
  private:
   double limit() const { return kChoiceShare * choice_.asked; }
 
-  Frames bakeAll(const Asset& look) const {
-    Frames frames;
-    for (size_t n = 0; n < frames_.size(); ++n) frames.push_back(baker_.bake(n, look));
-    return frames;
-  }
-  Frames bakeAt(double size) const { return bakeAll(lookOf(asset_, size, Precision::single, kAllOctaves)); }
+  Asset wholeLook(double size) const { return lookOf(asset_, size, Precision::single, kAllOctaves); }
 
-  /// Holds a bake against a reference, and writes that down.
-  double measure(const Asset& look, const Frames& bakes, const Frames& reference) {
-    const double error = errorOf(reference, bakes, kChoiceRays, kSearchSeed);
-    choice_.trials.push_back({look.voxelSize, look.precision, look.mostOctaves, error, mostActive(bakes)});
+  /// Holds a look against a reference, and writes that down.
+  double measure(const Asset& look, const Seen& seen, const Seen& reference) {
+    const double error = errorOf(reference, seen);
+    choice_.trials.push_back({look.voxelSize, look.precision, look.mostOctaves, error, seen.voxels});
     return error;
   }
 
@@ -103,22 +151,21 @@ class Search {
     return extent.shortest > 0.0 ? std::min(size, extent.shortest / kFirstAlongShortest) : size;
   }
 
+  bool tooMany(double voxels) const {
+    return asset_.particles ? kEightTimes * voxels > kMostBaked : voxels > kMostVoxels;
+  }
+
   /// Halves the voxels until the tolerance holds.
   void descend() {
-    size_ = firstSize();
-    Frames coarse = bakeAt(size_);
+    Seen coarse = rays_->see(wholeLook(size_));
     coarser_ = 0.0;
     for (;;) {
-      constexpr double kEightTimes = 8.0;
-      if (kEightTimes * double(mostActive(coarse)) > kMostVoxels) refuse();
-      Frames fine = bakeAt(0.5 * size_);
-      choice_.measured = measure(lookOf(asset_, size_, Precision::single, kAllOctaves), coarse, fine);
-      if (choice_.measured <= limit() && mostActive(coarse) > 0) {
+      if (tooMany(coarse.voxels)) refuse();
+      Seen fine = rays_->see(wholeLook(0.5 * size_));
+      choice_.measured = measure(wholeLook(size_), coarse, fine);
+      const bool asEmptyAsCanBeSeen = coarse.nothing() && fine.nothing() && ++emptyLooks_ > kMostEmptyLooks;
+      if ((choice_.measured <= limit() && !coarse.nothing()) || asEmptyAsCanBeSeen) {
         reference_ = std::move(fine);
-        return;
-      }
-      if (mostActive(coarse) == 0 && mostActive(fine) == 0 && ++emptyBakes_ > kMostEmptyBakes) {
-        reference_ = std::move(fine);  // as empty as can be seen
         return;
       }
       coarser_ = size_;
@@ -131,8 +178,9 @@ class Search {
     const double reached = choice_.trials.empty() ? 1.0 : choice_.trials.back().error;
     throw InputError(asset_.where, "asset '" + asset_.name + "': a tolerance of " + percent(choice_.asked) +
                                        " needs voxels below " + shown(coarser_) + " (there " +
-                                       percent(reached) + " was measured), and a reference of more than " +
-                                       shown(kMostVoxels) +
+                                       percent(reached) + " was measured): " +
+                                       (asset_.particles ? "a reference of more than " + shown(kMostBaked)
+                                                         : "more than " + shown(kMostVoxels)) +
                                        " voxels; give 'voxel_size', or a tolerance that is less strict");
   }
 
@@ -141,9 +189,8 @@ class Search {
     double fails = coarser_;
     for (int n = 0; n < kBisections && fails > 0.0; ++n) {
       const double middle = std::sqrt(size_ * fails);
-      const Asset look = lookOf(asset_, middle, Precision::single, kAllOctaves);
-      Frames reference = bakeAt(0.5 * middle);
-      const double error = measure(look, bakeAll(look), reference);
+      Seen reference = rays_->see(wholeLook(0.5 * middle));
+      const double error = measure(wholeLook(middle), rays_->see(wholeLook(middle)), reference);
       if (error > limit()) {
         fails = middle;
         continue;
@@ -156,7 +203,7 @@ class Search {
 
   /// Takes `look` in place of what was chosen where the tolerance still holds.
   bool take(const Asset& look) {
-    const double error = measure(look, bakeAll(look), reference_);
+    const double error = measure(look, rays_->see(look), reference_);
     if (error > limit()) return false;
     choice_.asset = look;
     choice_.measured = error;
@@ -182,21 +229,42 @@ class Search {
 
   /// Until rays that had no part in the search hold too: octaves back first, then finer voxels.
   void confirm() {
-    for (;;) {
-      const double error = errorOf(reference_, bakeAll(choice_.asset), kConfirmingRays, kConfirmingSeed);
-      choice_.measured = error;
-      if (error <= limit() || mostActive(reference_) == 0) return;
+    // Particles are baked whole however few the rays are.
+    const uint64_t atATime = asset_.particles ? kConfirmingRays : kChoiceRays;
+    const std::vector<Rays> groups = Rays(baker_, kConfirmingRays, kConfirmingSeed).groups(atATime);
+    std::vector<Seen> references;
+    while (!reference_.nothing() && !holdsAlong(groups, references)) {
       if (choice_.asset.mostOctaves != kAllOctaves) {
         const int more = choice_.asset.mostOctaves + 1;
         choice_.asset.mostOctaves = more < largestOctaves(asset_) ? more : kAllOctaves;
         continue;
       }
-      if (double(mostActive(reference_)) / (kFiner * kFiner * kFiner) > kMostVoxels) refuse();
       coarser_ = size_;
       size_ *= kFiner;
       choice_.asset.voxelSize = size_;
-      reference_ = bakeAt(0.5 * size_);
+      references.clear();
     }
+  }
+
+  /// Whether all rays hold what was chosen; `references` are what the first groups see of the reference, and
+  /// grow. What is too wrong for one group is not shown to the next.
+  bool holdsAlong(const std::vector<Rays>& groups, std::vector<Seen>& references) {
+    DepthDifference worst = differenceOf(reference_, reference_);  // the search's largest depth
+    double voxels = 0.0;
+    for (size_t n = 0; n < groups.size(); ++n) {
+      if (n == references.size()) references.push_back(groups[n].see(wholeLook(0.5 * size_)));
+      const Seen seen = groups[n].see(choice_.asset);
+      if (tooMany(seen.voxels)) refuse();
+      const DepthDifference d = differenceOf(references[n], seen);
+      worst.largest = std::max(worst.largest, d.largest);
+      worst.largestA = std::max(worst.largestA, d.largestA);
+      voxels = std::max(voxels, seen.voxels);
+      if (worst.relative() > limit()) break;
+    }
+    const Asset& look = choice_.asset;
+    choice_.measured = worst.relative();
+    choice_.trials.push_back({look.voxelSize, look.precision, look.mostOctaves, choice_.measured, voxels});
+    return choice_.measured <= limit();
   }
 
   void tellWhatIsLeftOut() {
@@ -209,7 +277,7 @@ class Search {
       choice_.leftOut.push_back("frames other than first, middle and last were not measured");
   }
 
-  static constexpr int kMostEmptyBakes = 4;
+  static constexpr int kMostEmptyLooks = 4;
 
   const Asset& asset_;
   const std::vector<std::optional<int>> frames_;
@@ -217,8 +285,9 @@ class Search {
   Choice choice_;
   double size_ = 0.0;     // the coarsest that holds so far
   double coarser_ = 0.0;  // twice that, where it was measured and does not hold
-  int emptyBakes_ = 0;
-  Frames reference_;  // of size_
+  int emptyLooks_ = 0;
+  std::optional<Rays> rays_;  // of the search
+  Seen reference_;            // of size_
 };
 
 }  // namespace
@@ -242,12 +311,8 @@ std::string choiceAsText(const Choice& choice) {
 double depthError(const Pipeline& pipeline, const Asset& reference, const Asset& look, uint64_t rays,
                   uint64_t seed, const std::string& outFolder) {
   const TrialBaker baker(pipeline, look, sampledFrames(look), outFolder);
-  Frames fine, coarse;
-  for (size_t n = 0; n < baker.frameCount(); ++n) {
-    fine.push_back(baker.bake(n, reference));
-    coarse.push_back(baker.bake(n, look));
-  }
-  return errorOf(fine, coarse, rays, seed);
+  const Rays chords(baker, rays, seed);
+  return errorOf(chords.see(reference), chords.see(look));
 }
 
 }  // namespace nephele

@@ -1,6 +1,6 @@
 // `tolerance` in place of a voxel size: the coarsest voxels, half or float, and the fewest octaves whose
-// optical depths stay within it of the same recipe at half the voxel size. Depends on pipeline, trial,
-// volume's difference; no OpenVDB.
+// optical depths stay within it of the same recipe at half the voxel size. Depends on pipeline, trial;
+// no OpenVDB.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,14 @@
 
 namespace nephele {
 
-/// One bake that was held against the same recipe at half its voxel size, float, all octaves: the worst of
+/// One look that was held against the same recipe at half its voxel size, float, all octaves: the worst of
 /// the frames measured.
 struct ChoiceTrial {
   double voxelSize = 0.0;
   Precision precision = Precision::single;
   int mostOctaves = kAllOctaves;
-  double error = 0.0;  // largest depth difference over the largest depth of all frames
-  uint64_t voxelsActive = 0;
+  double error = 0.0;   // largest depth difference over the largest depth of all frames
+  double voxels = 0.0;  // about as many active ones, but for constant space
 };
 
 struct Choice {
@@ -41,17 +41,17 @@ inline constexpr double kChoiceShare = 0.8;
 
 /// Chooses for an asset with a tolerance: halves the voxels until the tolerance holds, bisects between the
 /// last two sizes, then takes half precision and octaves away where that keeps it. What is left is confirmed
-/// by other rays, and given its octaves again and finer voxels until they hold too. Sequences are measured at
-/// their first, middle and last frame. The same on any number of threads and for any part of the frames.
-/// Throws InputError where the tolerance asks for more voxels than is measured, saying what was reached, and
-/// where the asset cannot be baked.
+/// by other rays, and given its octaves again and finer voxels until they hold too. Density fields are
+/// evaluated where rays go, particles baked. Sequences are measured at their first, middle and last frame.
+/// The same on any number of threads and for any part of the frames. Throws InputError where the tolerance
+/// asks for more voxels than is measured, saying what was reached, and where the asset cannot be baked.
 Choice chooseFor(const Pipeline& pipeline, const Asset& asset, const std::string& outFolder);
 
 /// One line: what was asked, chosen, measured and left out; the file's metadata holds it.
 std::string choiceAsText(const Choice& choice);
 
 /// The largest depth difference along `rays` rays of `seed` between two looks of an asset, over the largest
-/// depth of `reference`, both over all of the asset's sampled frames.
+/// depth of `reference`, both over all of the asset's sampled frames; measured as the search does.
 double depthError(const Pipeline& pipeline, const Asset& reference, const Asset& look, uint64_t rays,
                   uint64_t seed, const std::string& outFolder);
 

@@ -67,7 +67,7 @@ Json toleranceJson(const Choice& choice) {
                      {"precision", precisionName(trial.precision)},
                      {"most_octaves", octaves(trial.mostOctaves)},
                      {"error", trial.error},
-                     {"voxels_active", trial.voxelsActive}});
+                     {"voxels_about", std::round(trial.voxels)}});
   return {{"asked", choice.asked},
           {"measured", choice.measured},
           {"rays", choice.rays},

@@ -104,7 +104,9 @@ std::optional<std::vector<BandLimitNote>> bandLimitOf(const Pipeline& pipeline, 
 }
 
 VoxelizeSettings settingsOf(const Asset& asset, const BakeOptions& options) {
-  return {asset.voxelSize, asset.cutoff, asset.precision == Precision::half, options.memoryBytes};
+  const bool vel = asset.velocityFromMotion || !asset.velocityFields.empty();
+  return {asset.voxelSize, asset.cutoff, asset.precision == Precision::half, options.memoryBytes,
+          vel ? kVelocityLeafBytes : 0};
 }
 
 std::string refusalOf(const Asset& asset, const VoxelizeError& error) {

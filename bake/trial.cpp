@@ -8,12 +8,15 @@
 
 #include "bake/particle_run.h"
 #include "bake/voxelize.h"
+#include "bake/voxelize_rays.h"
 
 namespace nephele {
 namespace {
 
 // Voxels so small that no noise has faded: what has faded altogether has no support.
 constexpr double kNoneFaded = 1e-6;
+// Voxels along the sides of the bake that finds where the density is.
+constexpr double kSeenAlongLongest = 128.0, kSeenAlongShortest = 16.0;
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -41,6 +44,16 @@ struct TrialBaker::State {
   const Asset& asset;
   std::vector<std::optional<int>> frames;
   std::vector<std::unique_ptr<ParticleRun>> runs;  // one a frame, there already
+
+  Box supportOf(size_t frame) const {
+    BuildContext context = contextOf(pipeline, asset, frames[frame]);
+    context.voxelSize = kNoneFaded;
+    return buildField(*asset.density, context)->support();
+  }
+
+  FieldPtr fieldOf(size_t frame, const Asset& look) const {
+    return buildField(*asset.density, contextOf(pipeline, look, frames[frame]));
+  }
 
   TrialBake bakeDensity(size_t frame, const Asset& look, const std::string& file) const {
     TrialBake result;
@@ -94,6 +107,39 @@ TrialBake TrialBaker::bake(size_t frame, const Asset& look, const std::string& f
                                  : state_->bakeDensity(frame, look, file);
 }
 
+Chords TrialBaker::chords(size_t frame, uint64_t count, uint64_t seed) const {
+  Box box = nothing();
+  if (state_->asset.particles) {
+    box = state_->runs[frame]->extent();
+  } else {
+    Asset coarse = state_->asset;
+    const Extent extent = this->extent();
+    coarse.voxelSize = std::min(extent.longest / kSeenAlongLongest, extent.shortest / kSeenAlongShortest);
+    coarse.precision = Precision::single;
+    const BrickVolume seen = bake(frame, coarse).bricks;
+    box = {glm::dvec3(seen.activeMin - 1) * coarse.voxelSize, glm::dvec3(seen.activeMax) * coarse.voxelSize};
+    if (seen.empty()) box = state_->supportOf(frame);  // thinner than can be seen
+  }
+  return randomChords(box.low, box.high, count, seed);
+}
+
+TrialBaker::Depths TrialBaker::depths(size_t frame, const Asset& look, const Chords& chords) const {
+  if (state_->asset.particles) {
+    const TrialBake baked = bake(frame, look);
+    return {depthsAlong(baked.bricks, chords.lines), double(baked.voxelsActive)};
+  }
+  const Asset& asset = state_->asset;
+  try {
+    RayDepths found =
+        depthsAlong(*state_->fieldOf(frame, look),
+                    {look.voxelSize, look.cutoff, look.precision == Precision::half}, chords.lines);
+    const double voxel = look.voxelSize * look.voxelSize * look.voxelSize;
+    return {std::move(found.depths), chords.volumeOf(found.lengthVaried) / voxel};
+  } catch (const VoxelizeError& error) {
+    throw InputError(asset.where, "asset '" + asset.name + "': " + error.what());
+  }
+}
+
 TrialBaker::Extent TrialBaker::extent() const {
   Box all = nothing();
   for (size_t n = 0; n < frameCount(); ++n) {
@@ -101,9 +147,7 @@ TrialBaker::Extent TrialBaker::extent() const {
       all = hull(all, state_->runs[n]->extent());
       continue;
     }
-    BuildContext context = contextOf(state_->pipeline, state_->asset, state_->frames[n]);
-    context.voxelSize = kNoneFaded;
-    all = hull(all, buildField(*state_->asset.density, context)->support());
+    all = hull(all, state_->supportOf(n));
   }
   return extentOf(all);
 }

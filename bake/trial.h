@@ -9,6 +9,7 @@
 
 #include "bake/pipeline.h"
 #include "volume/bricks.h"
+#include "volume/chords.h"
 
 namespace nephele {
 
@@ -34,6 +35,17 @@ class TrialBaker {
   /// The asset's frame with the voxel size, precision, octaves and cutoff of `look`, an asset like it. Writes
   /// the file as well where `file` is not empty. Throws InputError on what cannot be baked.
   TrialBake bake(size_t frame, const Asset& look, const std::string& file = {}) const;
+
+  /// `count` chords of the sphere round what the frame holds, found by a coarse bake; each seed has its own.
+  Chords chords(size_t frame, uint64_t count, uint64_t seed) const;
+  struct Depths {
+    std::vector<double> depths;  // one a chord
+    double voxels = 0.0;         // about as many active ones, but for constant space
+  };
+  /// Optical depths of bake(frame, look) along chords of the frame. Of a density field nothing is baked: the
+  /// voxels that rays come near are evaluated.
+  Depths depths(size_t frame, const Asset& look, const Chords& chords) const;
+
   /// The longest and the shortest side of the box outside which the density is 0, world units; 0 where it is
   /// empty or without end.
   struct Extent {

@@ -38,8 +38,8 @@ class Voxelizer {
     tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16), [&](const tbb::blocked_range<size_t>& range) {
       for (size_t n = range.begin(); n < range.end(); ++n) {
         leaves_[n] = filler_.fill(found_.origins[n], sums_[n]);
-        if (leaves_[n] && ++held > settings_.memoryBytes / kLeafBytes)
-          throw tooMuchMemory(double(held) / double(done + 1) * double(count), settings_.memoryBytes);
+        if (leaves_[n] && double(++held) * bytesOfLeaf(settings_) > double(settings_.memoryBytes))
+          throw tooMuchMemory(double(held) / double(done + 1) * double(count), settings_);
       }
       const uint64_t now = done += range.size();
       if (progress_) progress_(now, count);

@@ -20,7 +20,11 @@ struct VoxelizeSettings {
   double cutoff = 0.001;   // values at or below become inactive and 0
   bool half = true;        // round values to half precision, as the file will store them
   uint64_t memoryBytes = std::numeric_limits<uint64_t>::max();  // what the grid may take
+  uint64_t bytesBeside = 0;  // of that, what other grids take for each leaf of it (kVelocityLeafBytes)
 };
+
+/// What a leaf of 8³ velocities takes in memory, node and allocator included.
+inline constexpr uint64_t kVelocityLeafBytes = 6350;
 
 /// OpenVDB's grid "density", pruned at tolerance 0; where that leaves tiles alone, one leaf of them.
 struct VoxelGrid;

@@ -41,7 +41,7 @@ void checkDomain(const Field& field, const VoxelizeSettings& settings) {
   const openvdb::CoordBBox box = filler.box();
   if (box.empty()) return;
   const auto fits = [&](double leaves) {
-    return leaves * double(kLeafBytes) <= double(settings.memoryBytes);
+    return leaves * bytesOfLeaf(settings) <= double(settings.memoryBytes);
   };
   const auto leavesAlong = [&](int axis) { return double(box.dim()[axis]) / kBlockEdge; };
   if (fits(leavesAlong(0) * leavesAlong(1) * leavesAlong(2))) return;
@@ -51,7 +51,7 @@ void checkDomain(const Field& field, const VoxelizeSettings& settings) {
   const double most = double(cubes.size()) * kLeavesInCube;
   if (fits(most)) return;
   const double least = most * leastShare(filler, cubes);
-  if (!fits(least)) throw tooMuchMemory(least, settings.memoryBytes);
+  if (!fits(least)) throw tooMuchMemory(least, settings);
 }
 
 }  // namespace nephele

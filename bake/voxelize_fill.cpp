@@ -31,10 +31,11 @@ std::string inGigabytes(double bytes) { return shown(bytes * 1e-9) + " GB"; }
 
 }  // namespace
 
-VoxelizeError tooMuchMemory(double leaves, uint64_t available) {
+VoxelizeError tooMuchMemory(double leaves, const VoxelizeSettings& settings) {
   return VoxelizeError("the density fills about " + shown(leaves * kBlockPoints) + " voxels, which take " +
-                       inGigabytes(leaves * double(kLeafBytes)) + " of memory, and " +
-                       inGigabytes(double(available)) + " are available; use larger voxels");
+                       inGigabytes(leaves * bytesOfLeaf(settings)) + " of memory" +
+                       (settings.bytesBeside > 0 ? " with the other grids" : "") + ", and " +
+                       inGigabytes(double(settings.memoryBytes)) + " are available; use larger voxels");
 }
 
 void checkEnds(const Field& field) {
@@ -84,25 +85,26 @@ Box LeafFiller::worldBox(const Cube& cube) const {
   return roundedOutwards({low * settings_.voxelSize, (low + double(cube.edge - 1)) * settings_.voxelSize});
 }
 
-void LeafFiller::addConstant(const Cube& cube, float value, Occupied& found) const {
+float LeafFiller::asStored(const Coord& origin, float value) const {
   alignas(kBlockAlignment) float values[kBlockPoints];
   std::fill_n(values, kBlockPoints, value);
-  const LeafScan scan = scanLeaf(rules_, values);
-  if (!scan.storable) {
-    std::fill_n(values, kBlockPoints, value);
-    refuseUnstorable(cube.origin, values);
-  }
-  if (scan.active) found.constant.push_back({cube.origin, cube.edge, values[0]});
+  kept(origin, values);
+  return values[0];
+}
+
+std::optional<float> LeafFiller::settledValue(const Coord& origin, int edge) const {
+  const Interval bounds = field_.bounds(worldBox({origin, edge}));
+  if (bounds.high <= settings_.cutoff) return 0.0f;
+  // All values are floats, so one value that bounds leave is one.
+  if (bounds.exact() && bounds.low == double(float(bounds.low))) return asStored(origin, float(bounds.low));
+  return std::nullopt;
 }
 
 void LeafFiller::descend(const Cube& cube, int leastEdge, const openvdb::CoordBBox& within,
                          Occupied& found) const {
   if (!within.hasOverlap(openvdb::CoordBBox::createCube(cube.origin, cube.edge))) return;
-  const Interval bounds = field_.bounds(worldBox(cube));
-  if (bounds.high <= settings_.cutoff) return;
-  // All values are floats, so one value that bounds leave is one.
-  if (bounds.exact() && bounds.low == double(float(bounds.low))) {
-    addConstant(cube, float(bounds.low), found);
+  if (const std::optional<float> value = settledValue(cube.origin, cube.edge)) {
+    if (*value > 0.0f) found.constant.push_back({cube.origin, cube.edge, *value});
     return;
   }
   if (cube.edge == leastEdge) {
@@ -149,7 +151,10 @@ Occupied LeafFiller::find() const {
     const Cube cube{coarse.origins[n], kCoarseEdge};
     descend(cube, kBlockEdge, openvdb::CoordBBox::createCube(cube.origin, cube.edge), found[n]);
     if ((count += found[n].origins.size()) > settings_.memoryBytes / kCandidateBytes)
-      throw tooMuchMemory(double(count), settings_.memoryBytes);
+      throw VoxelizeError("the density may lie in more than " + shown(double(count) * kBlockPoints) +
+                          " voxels; the list of them alone takes the " +
+                          inGigabytes(double(settings_.memoryBytes)) +
+                          " of memory that are available; use larger voxels");
   });
   coarse.origins.clear();
   for (const Occupied& part : found) append(coarse, part);
@@ -177,14 +182,32 @@ std::unique_ptr<DensityLeaf> LeafFiller::fill(const Coord& origin, LeafSums& sum
 }
 
 LeafScan LeafFiller::scan(const Coord& origin, float* values) const {
-  const Lattice lattice{glm::dvec3(origin.x(), origin.y(), origin.z()) * settings_.voxelSize,
-                        settings_.voxelSize};
-  field_.evaluate(lattice, values);
-  const LeafScan scanned = scanLeaf(rules_, values);
-  if (!scanned.storable) {
-    field_.evaluate(lattice, values);
-    refuseUnstorable(origin, values);
+  const glm::dvec3 corner(origin.x(), origin.y(), origin.z());
+  field_.evaluate(Lattice{corner * settings_.voxelSize, settings_.voxelSize}, values);
+  return kept(origin, values);
+}
+
+LeafScan LeafFiller::scan(const Coord& origin, const uint16_t* places, size_t count, float* values) const {
+  float x[kBlockPoints], y[kBlockPoints], z[kBlockPoints], found[kBlockPoints];
+  for (size_t n = 0; n < count; ++n) {
+    const Coord at = DensityLeaf::offsetToLocalCoord(places[n]);
+    x[n] = float(at.x() * settings_.voxelSize);
+    y[n] = float(at.y() * settings_.voxelSize);
+    z[n] = float(at.z() * settings_.voxelSize);
   }
+  const glm::dvec3 corner(origin.x(), origin.y(), origin.z());
+  field_.evaluate(Points{corner * settings_.voxelSize, count, x, y, z}, found);
+  std::fill_n(values, kBlockPoints, 0.0f);
+  for (size_t n = 0; n < count; ++n) values[places[n]] = found[n];
+  return kept(origin, values);
+}
+
+/// Cuts and rounds, or refuses.
+LeafScan LeafFiller::kept(const Coord& origin, float* values) const {
+  alignas(kBlockAlignment) float given[kBlockPoints];
+  std::copy_n(values, kBlockPoints, given);
+  const LeafScan scanned = scanLeaf(rules_, values);
+  if (!scanned.storable) refuseUnstorable(origin, given);
   return scanned;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bake/voxelize.h"
@@ -41,8 +42,13 @@ inline constexpr int kCoarseEdge = 128;
 /// The edge of the tree's largest tiles, with which the way down begins.
 inline constexpr int kRootEdge = 4096;
 
+/// What a leaf takes with those of the grids beside it.
+inline double bytesOfLeaf(const VoxelizeSettings& settings) {
+  return double(kLeafBytes) + double(settings.bytesBeside);
+}
+
 /// "the density fills about N voxels, which take N GB of memory, ...".
-VoxelizeError tooMuchMemory(double leaves, uint64_t available);
+VoxelizeError tooMuchMemory(double leaves, const VoxelizeSettings& settings);
 
 /// Every method is const and may be called from any number of threads; all throw VoxelizeError.
 class LeafFiller {
@@ -61,6 +67,13 @@ class LeafFiller {
   /// Whether bounds alone say what the leaf at `origin` holds: nothing, or one value.
   bool isSettled(const openvdb::Coord& origin) const;
 
+  /// What bounds say of a cube of `edge` voxels: all its values as stored where they are one, 0 among them.
+  std::optional<float> settledValue(const openvdb::Coord& origin, int edge) const;
+  /// The 512 voxels from `origin` on, which need not be a leaf's, as stored.
+  LeafScan scan(const openvdb::Coord& origin, float* values) const;
+  /// The same of the `count` voxels named by their places among the 512; the others are 0.
+  LeafScan scan(const openvdb::Coord& origin, const uint16_t* places, size_t count, float* values) const;
+
  private:
   struct Cube {
     openvdb::Coord origin;
@@ -69,8 +82,8 @@ class LeafFiller {
 
   Box worldBox(const Cube& cube) const;
   void descend(const Cube& cube, int leastEdge, const openvdb::CoordBBox& within, Occupied& found) const;
-  void addConstant(const Cube& cube, float value, Occupied& found) const;
-  LeafScan scan(const openvdb::Coord& origin, float* values) const;
+  float asStored(const openvdb::Coord& origin, float value) const;
+  LeafScan kept(const openvdb::Coord& origin, float* values) const;
   [[noreturn]] void refuseUnstorable(const openvdb::Coord& origin, const float* values) const;
   std::string placeOf(const openvdb::Coord& origin, int n) const;
 

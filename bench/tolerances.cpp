@@ -24,6 +24,7 @@ struct Asked {
   std::string folder, only;
   uint64_t seed = 1;  // the choice itself uses 0
   std::vector<double> tolerances{std::begin(kTolerances), std::end(kTolerances)};
+  bool trials = false;  // print what was tried as well, to stderr
 };
 
 Asset finerThan(const Asset& chosen) {
@@ -57,6 +58,11 @@ bool measure(const Pipeline& pipeline, double tolerance, const Asked& asked, con
   asset.tolerance = tolerance;
   asset.precisionGiven = false;
   const Choice choice = chooseFor(pipeline, asset, scratch);
+  if (asked.trials)
+    for (const ChoiceTrial& t : choice.trials)
+      std::cerr << "  " << number(t.voxelSize, 3) << (t.precision == Precision::half ? " half " : " float ")
+                << t.mostOctaves << " octaves: " << percent(t.error) << ", " << number(t.voxels, 3)
+                << " voxels\n";
   const double fresh =
       depthError(pipeline, finerThan(choice.asset), choice.asset, kChoiceRays, asked.seed, scratch);
   const double bytes = bytesOf(pipeline, choice.asset, scratch) / bytesOf(pipeline, own, scratch);
@@ -79,6 +85,8 @@ Asked parsed(int argc, char** argv) {
     const std::string word = argv[i];
     if (word == "--seed" && i + 1 < argc)
       asked.seed = std::strtoull(argv[++i], nullptr, 10);
+    else if (word == "--trials")
+      asked.trials = true;
     else if (word == "--only" && i + 1 < argc)
       asked.only = argv[++i];
     else if (word == "--tolerance" && i + 1 < argc)
@@ -88,7 +96,8 @@ Asked parsed(int argc, char** argv) {
   }
   if (!tolerances.empty()) asked.tolerances = tolerances;
   if (asked.folder.empty())
-    throw InputError({}, "usage: nephele_tolerances FOLDER [--seed N] [--only NAME] [--tolerance 3%]...");
+    throw InputError(
+        {}, "usage: nephele_tolerances FOLDER [--seed N] [--only NAME] [--tolerance 3%]... [--trials]");
   return asked;
 }
 
@@ -97,6 +106,9 @@ int run(const Asked& asked) {
   for (const auto& entry : std::filesystem::directory_iterator(asked.folder))
     if (entry.path().extension() == ".yaml" && (asked.only.empty() || entry.path().stem() == asked.only))
       recipes.push_back(entry.path().string());
+  if (recipes.empty())
+    throw InputError(
+        {}, "no recipe" + (asked.only.empty() ? "" : " '" + asked.only + "'") + " in " + asked.folder);
   std::sort(recipes.begin(), recipes.end());
   std::string scratch = (std::filesystem::temp_directory_path() / "nephele_tolerances_XXXXXX").string();
   if (mkdtemp(scratch.data()) == nullptr) throw WorldError("no scratch folder");

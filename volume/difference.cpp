@@ -7,12 +7,9 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
-#include <random>
 
 namespace nephele {
 namespace {
@@ -21,10 +18,10 @@ using glm::dvec3;
 using glm::dvec4;
 using glm::ivec3;
 
-/// Sums over one brick or one ray; added up in a fixed order.
+/// Sums over one brick; added up in a fixed order.
 struct Sums {
   uint64_t both = 0, onlyFirst = 0, onlySecond = 0;
-  double largest = 0.0, squares = 0.0, largestFirst = 0.0;
+  double largest = 0.0, squares = 0.0, sumFirst = 0.0, sumSecond = 0.0;
 };
 
 void add(Sums& to, const Sums& from) {
@@ -33,7 +30,8 @@ void add(Sums& to, const Sums& from) {
   to.onlySecond += from.onlySecond;
   to.largest = std::max(to.largest, from.largest);
   to.squares += from.squares;
-  to.largestFirst = std::max(to.largestFirst, from.largestFirst);
+  to.sumFirst += from.sumFirst;
+  to.sumSecond += from.sumSecond;
 }
 
 dvec3 transformed(const glm::dmat4& m, const dvec3& p) { return dvec3(m * dvec4(p, 1.0)); }
@@ -76,6 +74,8 @@ Sums overSamples(const BrickVolume& first, const BrickVolume& second, const std:
           part.onlySecond += a <= 0.0;
           part.largest = std::max(part.largest, std::abs(a - b));
           part.squares += (a - b) * (a - b);
+          part.sumFirst += a;
+          part.sumSecond += b;
         }
   });
   Sums sums;
@@ -95,48 +95,6 @@ void growBox(const BrickVolume& v, dvec3& low, dvec3& high) {
   }
 }
 
-/// ∫ ρ ds along the chord from `from` to `to`, by midpoints a quarter of a voxel apart.
-double depthAlong(const BrickVolume& v, const dvec3& from, const dvec3& to) {
-  if (v.empty()) return 0.0;
-  constexpr double kStepVoxels = 0.25;
-  const glm::dmat4 toIndex = glm::inverse(v.worldFromIndex);
-  const dvec3 start = transformed(toIndex, from), along = transformed(toIndex, to) - start;
-  const int steps = std::max(1, int(std::ceil(glm::length(along) / kStepVoxels)));
-  double sum = 0.0;
-  for (int n = 0; n < steps; ++n) sum += densityAt(v, start + (n + 0.5) / steps * along);
-  return sum * glm::distance(from, to) / steps;
-}
-
-dvec3 onSphere(std::mt19937_64& random) {
-  // Two draws of 53 bits each, in place of a distribution, whose sequence the standard leaves open.
-  const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
-  const double z = 2.0 * uniform() - 1.0, angle = 2.0 * std::numbers::pi * uniform();
-  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-  return {r * std::cos(angle), r * std::sin(angle), z};
-}
-
-Sums overRays(const BrickVolume& a, const BrickVolume& b, uint64_t rays, uint64_t seed) {
-  dvec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
-  growBox(a, low, high);
-  growBox(b, low, high);
-  Sums sums;
-  if (!(low.x <= high.x)) return sums;
-  const dvec3 centre = 0.5 * (low + high);
-  const double radius = 0.5 * glm::length(high - low);
-  std::vector<Sums> parts(rays);
-  tbb::parallel_for(uint64_t(0), rays, [&](uint64_t n) {
-    constexpr int kRayBits = 32;
-    std::mt19937_64 random(seed << kRayBits | n);
-    const dvec3 from = centre + radius * onSphere(random), to = centre + radius * onSphere(random);
-    const double depthA = depthAlong(a, from, to), depthB = depthAlong(b, from, to);
-    parts[n].largest = std::abs(depthA - depthB);
-    parts[n].squares = (depthA - depthB) * (depthA - depthB);
-    parts[n].largestFirst = depthA;
-  });
-  for (const Sums& part : parts) add(sums, part);
-  return sums;
-}
-
 double relative(double difference, double to) {
   if (difference == 0.0) return 0.0;
   return to > 0.0 ? difference / to : std::numeric_limits<double>::infinity();
@@ -144,15 +102,17 @@ double relative(double difference, double to) {
 
 }  // namespace
 
-double DepthDifference::relative() const { return nephele::relative(largest, largestA); }
 double GridDifference::relativeDensity() const { return relative(largest, maximumA); }
+double GridDifference::relativeRms() const { return relative(rms, meanA); }
 double GridDifference::relativeDepth() const { return relative(largestDepth, largestDepthA); }
 double GridDifference::relativeVelocity() const { return relative(largestVelocity, largestSpeedA); }
 
 DepthDifference depthDifference(const BrickVolume& a, const BrickVolume& b, uint64_t rays, uint64_t seed) {
-  const Sums depths = overRays(a, b, rays, seed);
-  return {rays, depths.largestFirst, depths.largest,
-          rays > 0 ? std::sqrt(depths.squares / double(rays)) : 0.0};
+  dvec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
+  growBox(a, low, high);
+  growBox(b, low, high);
+  const Chords chords = randomChords(low, high, rays, seed);
+  return differenceOf(depthsAlong(a, chords.lines), depthsAlong(b, chords.lines));
 }
 
 GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t rays) {
@@ -165,6 +125,7 @@ GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t r
     if (!d.sameTransform || !holdsBrick(a, brick)) rest.push_back(brick);
   Sums other = overSamples(b, a, rest);
   std::swap(other.onlyFirst, other.onlySecond);
+  std::swap(other.sumFirst, other.sumSecond);
   add(samples, other);
   d.voxelsBoth = samples.both;
   d.voxelsOnlyA = samples.onlyFirst;
@@ -172,6 +133,7 @@ GridDifference difference(const BrickVolume& a, const BrickVolume& b, uint64_t r
   d.largest = samples.largest;
   const uint64_t counted = samples.both + samples.onlyFirst + samples.onlySecond;
   d.rms = counted > 0 ? std::sqrt(samples.squares / double(counted)) : 0.0;
+  d.meanA = counted > 0 ? samples.sumFirst / double(counted) : 0.0;
   const DepthDifference depths = depthDifference(a, b, rays);
   d.rays = rays;
   d.largestDepthA = depths.largestA;
@@ -216,6 +178,7 @@ std::string differenceAsJson(const GridDifference& d, const std::string& pathA, 
        {{"largest", d.largest},
         {"relative", d.relativeDensity()},
         {"rms", d.rms},
+        {"relative_rms", d.relativeRms()},
         {"maximum_a", d.maximumA}}},
       {"optical_depth",
        {{"rays", d.rays},

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "volume/bricks.h"
+#include "volume/chords.h"
 
 namespace nephele {
 
@@ -18,6 +19,7 @@ struct GridDifference {
   double maximumA = 0.0;  // largest density
   double largest = 0.0;   // largest |density difference|
   double rms = 0.0;       // over samples above 0 in either
+  double meanA = 0.0;     // A's mean over the same samples
   uint64_t rays = 0;
   double largestDepthA = 0.0;  // of all rays
   double largestDepth = 0.0;   // largest |depth difference|
@@ -31,19 +33,9 @@ struct GridDifference {
   /// The figures that --tolerance judges: over A's maximum, A's largest depth, A's largest speed. 0 where
   /// both are 0, infinite where A is empty and B is not.
   double relativeDensity() const;
+  double relativeRms() const;  // rms over meanA
   double relativeDepth() const;
   double relativeVelocity() const;
-};
-
-/// Optical depths of B against A along random chords.
-struct DepthDifference {
-  uint64_t rays = 0;
-  double largestA = 0.0;  // of all rays, world units for a medium of unit extinction
-  double largest = 0.0;   // largest |difference|
-  double rms = 0.0;
-
-  /// The largest difference over A's largest depth: 0 where both are 0, infinite where only A's is.
-  double relative() const;
 };
 
 /// Along `rays` random chords of the common box (uniform ends on its bounding sphere); each seed has its own.

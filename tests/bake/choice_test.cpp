@@ -57,11 +57,11 @@ TEST_F(ChoiceTest, TakesTheCoarsestVoxelsThatHold) {
   const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
   double coarsestFailure = 1e9;
   for (const ChoiceTrial& trial : choice.trials) {
-    const bool whole = trial.precision == Precision::single && trial.mostOctaves == kAllOctaves;
-    if (whole && trial.error > kChoiceShare * choice.asked && trial.voxelSize > choice.asset.voxelSize)
+    if (trial.mostOctaves == kAllOctaves && trial.error > kChoiceShare * choice.asked &&
+        trial.voxelSize > choice.asset.voxelSize)
       coarsestFailure = std::min(coarsestFailure, trial.voxelSize);
   }
-  // Three bisections of a factor of two.
+  // Three bisections of a factor of two; confirming takes such steps too.
   EXPECT_LE(coarsestFailure / choice.asset.voxelSize, std::pow(2.0, 1.0 / 8.0) + 1e-6);
   EXPECT_EQ(choice.asset.precision, Precision::half);
 }
@@ -165,7 +165,7 @@ CostPoint pointOf(const std::string& sweep, double size, int octaves, uint64_t b
   point.look.mostOctaves = octaves;
   point.fileBytes = point.gridBytes = bytes;
   point.seconds = double(bytes);
-  point.depthLargest = point.densityLargest = depth;
+  point.depthLargest = point.densityRmse = depth;
   return point;
 }
 
@@ -197,7 +197,7 @@ TEST(CostFronts, WhatMissesADepthShadowsNothing) {
   std::vector<CostPoint> points = {pointOf("voxel size", 1.0, kAllOctaves, 1000, 0.01),
                                    pointOf("voxel size", 2.0, kAllOctaves, 100, 0.1),
                                    pointOf("cutoff", 1.0, kAllOctaves, 10, 1.0)};
-  points[2].densityLargest = 0.001;  // less than the others' errors, for less
+  points[2].densityRmse = 0.001;  // less than the others' errors, for less
   for (const CostFront& front : costFronts(points)) {
     if (front.cost != CostKind::file) continue;
     EXPECT_EQ(front.points, (std::vector<size_t>{1, 0}));

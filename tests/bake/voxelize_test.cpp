@@ -246,6 +246,13 @@ TEST(Voxelize, RefusesWhatMemoryCannotHold) {
   settings.memoryBytes = 10'000'000;
   expectDomainRefusal(*ball, settings, "of memory, and 0.01 GB are available; use larger voxels");
   expectRefusal(*ball, settings, "of memory, and 0.01 GB are available; use larger voxels");
+  // A grid of velocities beside it counts.
+  settings.memoryBytes = 30'000'000;
+  EXPECT_NO_THROW(voxelize(*ball, settings));
+  settings.bytesBeside = kVelocityLeafBytes;
+  expectDomainRefusal(*ball, settings, "of memory with the other grids, and 0.03 GB are available");
+  expectRefusal(*ball, settings, "of memory with the other grids, and 0.03 GB are available");
+  settings.bytesBeside = 0;
   // Two small balls in a box of 30 GB are let through, as is a box of tiles.
   const auto at = [](double x) {
     return makeField("sphere",

@@ -28,6 +28,8 @@ TEST(Difference, OfADoubledGridIsTheGrid) {
   const GridDifference d = difference(cube(0.5f, 0.1), cube(1.0f, 0.1), 500);
   EXPECT_DOUBLE_EQ(d.largest, 0.5);
   EXPECT_DOUBLE_EQ(d.rms, 0.5);
+  EXPECT_DOUBLE_EQ(d.meanA, 0.5);
+  EXPECT_DOUBLE_EQ(d.relativeRms(), 1.0);
   EXPECT_DOUBLE_EQ(d.relativeDensity(), 1.0);
   EXPECT_NEAR(d.relativeDepth(), 1.0, 1e-12);
 }
@@ -37,6 +39,8 @@ TEST(Difference, CountsWhatOnlyOneHolds) {
   EXPECT_EQ(d.voxelsBoth, 15u * 400u);
   EXPECT_EQ(d.voxelsOnlyA, 5u * 400u);
   EXPECT_EQ(d.voxelsOnlyB, 5u * 400u);
+  EXPECT_DOUBLE_EQ(d.meanA, 0.8);  // over the samples of either
+  EXPECT_DOUBLE_EQ(d.rms, std::sqrt(0.4));
   EXPECT_DOUBLE_EQ(d.largest, 1.0);
 }
 
