@@ -132,7 +132,7 @@ class CostSweep {
     const double maximum = d.maximumA > 0.0 ? d.maximumA : 1.0,
                  depth = d.largestDepthA > 0.0 ? d.largestDepthA : 1.0;
     chart_.points.push_back({sweep, look, bake.seconds, bake.fileBytes, bake.gridBytes, bake.voxelsActive,
-                             d.largest / maximum, d.rms / maximum, d.largestDepth / depth,
+                             d.largest / maximum, d.relativeRms(), d.largestDepth / depth,
                              d.rmsDepth / depth});
   }
 

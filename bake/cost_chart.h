@@ -16,12 +16,14 @@ struct CostPoint {
   Asset look;
   double seconds = 0.0;  // of filling and writing
   uint64_t fileBytes = 0, gridBytes = 0, voxelsActive = 0;
-  double densityLargest = 0.0, densityRms = 0.0;  // over the reference's maximum
-  double depthLargest = 0.0, depthRms = 0.0;      // over the reference's largest depth
+  double densityLargest = 0.0;  // over the reference's maximum
+  double densityRmse = 0.0;     // relative RMSE: over the reference's mean where either is above 0
+  double depthLargest = 0.0, depthRms = 0.0;  // over the reference's largest depth
 };
 
 enum class CostKind { file, seconds, memory };
-enum class CostError { depth, density };  // the largest
+/// The largest of depths, the relative RMSE of densities: at a crisp rim one voxel always errs by all of it.
+enum class CostError { depth, density };
 
 double costOf(const CostPoint& point, CostKind kind);  // bytes or seconds
 double errorOf(const CostPoint& point, CostError error);

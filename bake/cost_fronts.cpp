@@ -32,7 +32,7 @@ CostPoint with(const CostPoint& at, const CostPoint& change, const CostPoint& ba
   joint.fileBytes = uint64_t(double(at.fileBytes) * ratio(double(change.fileBytes), double(base.fileBytes)));
   joint.gridBytes = uint64_t(double(at.gridBytes) * ratio(double(change.gridBytes), double(base.gridBytes)));
   joint.depthLargest = std::max(0.0, at.depthLargest + change.depthLargest - base.depthLargest);
-  joint.densityLargest = std::max(0.0, at.densityLargest + change.densityLargest - base.densityLargest);
+  joint.densityRmse = std::max(0.0, at.densityRmse + change.densityRmse - base.densityRmse);
   return joint;
 }
 
@@ -53,7 +53,7 @@ double costOf(const CostPoint& point, CostKind kind) {
 }
 
 double errorOf(const CostPoint& point, CostError error) {
-  return error == CostError::depth ? point.depthLargest : point.densityLargest;
+  return error == CostError::depth ? point.depthLargest : point.densityRmse;
 }
 
 std::vector<CostFront> costFronts(const std::vector<CostPoint>& points) {

@@ -48,15 +48,15 @@ bool isMainKnee(const CostChart& chart, size_t point) {
 
 Table tableOf(const CostChart& chart) {
   Table table;
-  table.header = {"sweep",       "voxel_size",    "precision",  "octaves",       "cutoff",
-                  "seconds",     "file_bytes",    "grid_bytes", "voxels_active", "density_largest",
-                  "density_rms", "depth_largest", "depth_rms",  "fronts"};
+  table.header = {"sweep",        "voxel_size",    "precision",  "octaves",       "cutoff",
+                  "seconds",      "file_bytes",    "grid_bytes", "voxels_active", "density_largest",
+                  "density_rmse", "depth_largest", "depth_rms",  "fronts"};
   for (size_t n = 0; n < chart.points.size(); ++n) {
     const CostPoint& p = chart.points[n];
     table.rows.push_back({p.sweep, number(p.look.voxelSize), precisionOf(p.look), octavesOf(p.look),
                           number(p.look.cutoff), number(p.seconds), std::to_string(p.fileBytes),
                           std::to_string(p.gridBytes), std::to_string(p.voxelsActive),
-                          number(p.densityLargest), number(p.densityRms), number(p.depthLargest),
+                          number(p.densityLargest), number(p.densityRmse), number(p.depthLargest),
                           number(p.depthRms), frontsOf(chart, n)});
   }
   return table;
@@ -71,19 +71,20 @@ double shownCost(const CostPoint& point, CostKind kind) {
   return costOf(point, kind) / (kind == CostKind::seconds ? 1.0 : kMegabyte);
 }
 
-/// One front with all points, a series for each sweep; bars go from the RMS to the largest error.
+/// One front with all points, a series for each sweep; bars of depths go from their RMS to
+/// the largest.
 ChartPanel panelOf(const CostChart& chart, const CostFront& front) {
   const bool depth = front.error == CostError::depth;
   ChartPanel panel{titleOf(chart) + (depth ? ": optical depth" : ": density"),
                    front.cost == CostKind::file      ? "file, MB"
                    : front.cost == CostKind::seconds ? "seconds"
                                                      : "grid in memory, MB",
-                   "largest error, bar down to RMS",
+                   depth ? "largest error, bar down to RMS" : "relative RMSE",
                    {},
                    {}};
   const auto pointOf = [&](const CostPoint& p) {
-    const double largest = errorOf(p, front.error);
-    return ChartPoint{shownCost(p, front.cost), largest, depth ? p.depthRms : p.densityRms, largest};
+    const double error = errorOf(p, front.error);
+    return ChartPoint{shownCost(p, front.cost), error, depth ? p.depthRms : error, error};
   };
   for (const CostPoint& p : chart.points) {
     if (panel.series.empty() || panel.series.back().name != p.sweep)
@@ -109,13 +110,13 @@ std::string pageOf(const CostChart& chart, const std::string& folder, bool drawn
        << chart.rays << " random rays.</p>\n";
   if (drawn) page << readWhole(folder + "/chart.svg");
   page << "<h2>All bakes</h2><table><tr><th>bake<th>seconds<th>file MB<th>memory MB<th>depth, "
-          "largest<th>RMS<th>density, largest<th>RMS<th>on the fronts of</tr>\n";
+          "largest<th>RMS<th>density, largest<th>relative RMSE<th>on the fronts of</tr>\n";
   for (size_t n = 0; n < chart.points.size(); ++n) {
     const CostPoint& p = chart.points[n];
     page << (isMainKnee(chart, n) ? "<tr class=\"knee\"><td>" : "<tr><td>") << htmlEscaped(nameOf(p.look))
          << "<td>" << number(p.seconds) << "<td>" << number(double(p.fileBytes) / kMegabyte) << "<td>"
          << number(double(p.gridBytes) / kMegabyte) << "<td>" << percent(p.depthLargest) << "<td>"
-         << percent(p.depthRms) << "<td>" << percent(p.densityLargest) << "<td>" << percent(p.densityRms)
+         << percent(p.depthRms) << "<td>" << percent(p.densityLargest) << "<td>" << percent(p.densityRmse)
          << "<td>" << frontsOf(chart, n) << "</tr>\n";
   }
   page << "</table>\n";
