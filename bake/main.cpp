@@ -130,11 +130,7 @@ int notBuilt(const std::string& name) {
   throw InputError({}, "'nephele-bake " + name + "' is not built yet");
 }
 
-int run(int argc, char** argv) {
-  Command command;
-  CLI::App app("Bakes the clouds of a recipe into sparse .vdb files.", "nephele-bake");
-  app.set_version_flag("--version", std::string(programVersion()));
-  app.option_defaults()->always_capture_default();
+void addBake(CLI::App& app, Command& command) {
   app.add_option("PIPELINE", command.pipeline, "Recipe");
   app.add_option("--out", command.options.outFolder, "Folder for the .vdb files")->type_name("DIR");
   app.add_option("--only", command.options.only, "Bake this asset; may be given again")
@@ -150,40 +146,65 @@ int run(int argc, char** argv) {
   app.add_flag("--dry-run", command.dryRun, "Check the recipe and print the files that would be written");
   app.add_option("--report", command.report, "Write a report as JSON; -: to stdout")->type_name("FILE.json");
   app.add_flag("--quiet", command.options.quiet, "Say nothing but errors and warnings");
-  CLI::App* const infoCommand =
-      app.add_subcommand("info", "Grids, boxes, voxels, memory, metadata of .vdb files");
-  infoCommand->add_option("FILE.vdb", command.files, "Files")->required();
-  infoCommand->add_flag("--json", command.json, "As JSON");
-  CLI::App* const nodesCommand = app.add_subcommand("nodes", "Every field with its parameters");
-  nodesCommand->add_option("NAME", command.node, "One field in full; default: all, a line each");
-  nodesCommand
-      ->add_option("--markdown", command.page, "Write fields.md and a picture of each field into this folder")
+}
+
+/// A command beside baking, and what it does.
+using Subcommand = std::pair<const CLI::App*, int (*)(const Command&)>;
+
+Subcommand addInfo(CLI::App& app, Command& command) {
+  CLI::App* const sub = app.add_subcommand("info", "Grids, boxes, voxels, memory, metadata of .vdb files");
+  sub->add_option("FILE.vdb", command.files, "Files")->required();
+  sub->add_flag("--json", command.json, "As JSON");
+  return {sub, info};
+}
+
+Subcommand addNodes(CLI::App& app, Command& command) {
+  CLI::App* const sub = app.add_subcommand("nodes", "Every field with its parameters");
+  sub->add_option("NAME", command.node, "One field in full; default: all, a line each");
+  sub->add_option("--markdown", command.page, "Write fields.md and a picture of each field into this folder")
       ->type_name("DIR");
-  CLI::App* const diffCommand = app.add_subcommand(
+  return {sub, nodes};
+}
+
+Subcommand addDiff(CLI::App& app, Command& command) {
+  CLI::App* const sub = app.add_subcommand(
       "diff", "Density, optical-depth and velocity difference; exit 3 if over the tolerance");
-  diffCommand->add_option("A.vdb", command.first, "The reference")->required();
-  diffCommand->add_option("B.vdb", command.second, "What is held against it")->required();
-  diffCommand
-      ->add_option(
-          "--tolerance", command.tolerance,
-          "Largest density, optical-depth and velocity difference, relative to A's largest: 0.03 or 3%")
+  sub->add_option("A.vdb", command.first, "The reference")->required();
+  sub->add_option("B.vdb", command.second, "What is held against it")->required();
+  sub->add_option(
+         "--tolerance", command.tolerance,
+         "Largest density, optical-depth and velocity difference, relative to A's largest: 0.03 or 3%")
       ->type_name("E");
-  diffCommand->add_flag("--json", command.json, "As JSON");
-  CLI::App* const chartCommand = app.add_subcommand(
+  sub->add_flag("--json", command.json, "As JSON");
+  return {sub, diff};
+}
+
+Subcommand addChart(CLI::App& app, Command& command) {
+  CLI::App* const sub = app.add_subcommand(
       "chart", "Density and optical-depth error against seconds, bytes and memory of one asset's bake");
-  chartCommand->add_option("PIPELINE", command.pipeline, "Recipe");
-  chartCommand
-      ->add_option("--only", command.options.only, "The asset; may be left out where there is one alone")
+  sub->add_option("PIPELINE", command.pipeline, "Recipe");
+  sub->add_option("--only", command.options.only, "The asset; may be left out where there is one alone")
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->capture_default_str();
-  chartCommand
-      ->add_option("--out", command.options.outFolder, "Folder for chart.csv, .svg, .png and index.html")
+  sub->add_option("--out", command.options.outFolder, "Folder for chart.csv, .svg, .png and index.html")
       ->type_name("DIR");
-  chartCommand->add_flag("--stability", command.stability,
-                         "In place of a chart: where bakes may be trusted, as stability.csv, .svg, .png and "
-                         ".md; needs no recipe; exit 3 where a density holds what none may");
-  chartCommand->add_flag("--quiet", command.options.quiet, "Say nothing but errors and warnings");
+  sub->add_flag(
+      "--stability", command.stability,
+      "In place of a chart: where bakes may be trusted, as stability.csv, .svg, .png and .md; needs "
+      "no recipe; exit 3 where a density holds what none may");
+  sub->add_flag("--quiet", command.options.quiet, "Say nothing but errors and warnings");
+  return {sub, chart};
+}
+
+int run(int argc, char** argv) {
+  Command command;
+  CLI::App app("Bakes the clouds of a recipe into sparse .vdb files.", "nephele-bake");
+  app.set_version_flag("--version", std::string(programVersion()));
+  app.option_defaults()->always_capture_default();
+  addBake(app, command);
+  const Subcommand subcommands[] = {addInfo(app, command), addNodes(app, command), addDiff(app, command),
+                                    addChart(app, command)};
   for (const char* const name : {"check"})
     app.add_subcommand(name, "Not built yet")->allow_extras()->callback([name] { notBuilt(name); });
   try {
@@ -193,10 +214,8 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     throw InputError({}, error.what(), "try nephele-bake --help");
   }
-  if (infoCommand->parsed()) return info(command);
-  if (nodesCommand->parsed()) return nodes(command);
-  if (diffCommand->parsed()) return diff(command);
-  if (chartCommand->parsed()) return chart(command);
+  for (const auto& [sub, does] : subcommands)
+    if (sub->parsed()) return does(command);
   return bake(command);
 }
 
