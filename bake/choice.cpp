@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 
 #include "bake/trial.h"
 #include "base/figures.h"
@@ -50,19 +51,26 @@ struct Seen {
   }
 };
 
-/// The largest difference and the largest depth of the reference, of all frames: a sequence is seen under one
-/// light, whatever its first frame holds.
-DepthDifference differenceOf(const Seen& reference, const Seen& look) {
-  DepthDifference worst;
-  for (size_t n = 0; n < look.depths.size(); ++n) {
-    const DepthDifference d = nephele::differenceOf(reference.depths[n], look.depths[n]);
-    worst.largest = std::max(worst.largest, d.largest);
-    worst.largestA = std::max(worst.largestA, d.largestA);
+/// The largest difference over the largest depth of the reference, both over all frames: a sequence is seen
+/// under one light, whatever its first frame holds. More rays than kChoiceRays are judged by as many at a
+/// time, since the deepest of many is deeper: the worst of these.
+double errorOf(const Seen& reference, const Seen& look) {
+  size_t most = 0;
+  for (const std::vector<double>& frame : look.depths) most = std::max(most, frame.size());
+  double error = 0.0;
+  for (size_t first = 0; first < most; first += kChoiceRays) {
+    DepthDifference worst;
+    for (size_t n = 0; n < look.depths.size(); ++n) {
+      const std::span<const double> a(reference.depths[n]), b(look.depths[n]);
+      const size_t from = std::min(first, a.size()), count = std::min(size_t(kChoiceRays), a.size() - from);
+      const DepthDifference d = differenceOf(a.subspan(from, count), b.subspan(from, count));
+      worst.largest = std::max(worst.largest, d.largest);
+      worst.largestA = std::max(worst.largestA, d.largestA);
+    }
+    error = std::max(error, worst.relative());
   }
-  return worst;
+  return error;
 }
-
-double errorOf(const Seen& reference, const Seen& look) { return differenceOf(reference, look).relative(); }
 
 /// The same rays for every look of an asset.
 class Rays {
@@ -116,13 +124,14 @@ class Search {
   Choice run() {
     const auto start = std::chrono::steady_clock::now();
     size_ = firstSize();
-    rays_.emplace(baker_, kChoiceRays, kSearchSeed);
+    // Particles are baked whole however few the rays are: the search then sees all rays at once.
+    rays_.emplace(baker_, asset_.particles ? kConfirmingRays : kChoiceRays, kSearchSeed);
     descend();
     bisect();
     choice_.asset = wholeLook(size_);
     if (!(asset_.precisionGiven && asset_.precision == Precision::single)) takeHalf();
     takeFewerOctaves();
-    confirm();
+    if (!asset_.particles) confirm();
     tellWhatIsLeftOut();
     choice_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(choice_);
@@ -229,9 +238,7 @@ class Search {
 
   /// Until rays that had no part in the search hold too: octaves back first, then finer voxels.
   void confirm() {
-    // Particles are baked whole however few the rays are.
-    const uint64_t atATime = asset_.particles ? kConfirmingRays : kChoiceRays;
-    const std::vector<Rays> groups = Rays(baker_, kConfirmingRays, kConfirmingSeed).groups(atATime);
+    const std::vector<Rays> groups = Rays(baker_, kConfirmingRays, kConfirmingSeed).groups(kChoiceRays);
     std::vector<Seen> references;
     while (!reference_.nothing() && !holdsAlong(groups, references)) {
       if (choice_.asset.mostOctaves != kAllOctaves) {
@@ -249,22 +256,18 @@ class Search {
   /// Whether all rays hold what was chosen; `references` are what the first groups see of the reference, and
   /// grow. What is too wrong for one group is not shown to the next.
   bool holdsAlong(const std::vector<Rays>& groups, std::vector<Seen>& references) {
-    DepthDifference worst = differenceOf(reference_, reference_);  // the search's largest depth
-    double voxels = 0.0;
-    for (size_t n = 0; n < groups.size(); ++n) {
+    double worst = 0.0, voxels = 0.0;
+    for (size_t n = 0; n < groups.size() && worst <= limit(); ++n) {
       if (n == references.size()) references.push_back(groups[n].see(wholeLook(0.5 * size_)));
       const Seen seen = groups[n].see(choice_.asset);
       if (tooMany(seen.voxels)) refuse();
-      const DepthDifference d = differenceOf(references[n], seen);
-      worst.largest = std::max(worst.largest, d.largest);
-      worst.largestA = std::max(worst.largestA, d.largestA);
+      worst = std::max(worst, errorOf(references[n], seen));
       voxels = std::max(voxels, seen.voxels);
-      if (worst.relative() > limit()) break;
     }
     const Asset& look = choice_.asset;
-    choice_.measured = worst.relative();
-    choice_.trials.push_back({look.voxelSize, look.precision, look.mostOctaves, choice_.measured, voxels});
-    return choice_.measured <= limit();
+    choice_.measured = worst;
+    choice_.trials.push_back({look.voxelSize, look.precision, look.mostOctaves, worst, voxels});
+    return worst <= limit();
   }
 
   void tellWhatIsLeftOut() {

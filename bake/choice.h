@@ -42,9 +42,10 @@ inline constexpr double kChoiceShare = 0.8;
 /// Chooses for an asset with a tolerance: halves the voxels until the tolerance holds, bisects between the
 /// last two sizes, then takes half precision and octaves away where that keeps it. What is left is confirmed
 /// by other rays, and given its octaves again and finer voxels until they hold too. Density fields are
-/// evaluated where rays go, particles baked. Sequences are measured at their first, middle and last frame.
-/// The same on any number of threads and for any part of the frames. Throws InputError where the tolerance
-/// asks for more voxels than is measured, saying what was reached, and where the asset cannot be baked.
+/// evaluated where rays go; particles are baked, and seen by as many rays at once from the start. Sequences
+/// are measured at their first, middle and last frame. The same on any number of threads and for any part of
+/// the frames. Throws InputError where the tolerance asks for more voxels than is measured, saying what was
+/// reached, and where the asset cannot be baked.
 Choice chooseFor(const Pipeline& pipeline, const Asset& asset, const std::string& outFolder);
 
 /// One line: what was asked, chosen, measured and left out; the file's metadata holds it.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times the path tracer against Blender Cycles to the same noise, on bench/cycles_ball.yaml, in turns within one run.
 
-usage: bench/cycles_bench.py [SIZE [SAMPLES]]      256 pixels and 64 of Cycles' samples unless given
+usage: bench/cycles_bench.py [SIZE [SAMPLES [BOUNCES...]]]     256 pixels, 64 of Cycles' samples, 0 and 4 bounces unless given
 Both render with two seeds: a picture's noise is the relative RMSE of the two over the root of 2 (their bias cancels, and the
 means are printed beside it). Time is the render alone. The speed-up is at equal noise: time × noise². Needs build/nephele-bake,
 build/nephele-preview and blender; 77 where there is none.
@@ -64,7 +64,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         said([BAKE, RECIPE, "--out", folder, "--quiet"])
-        for bounces in (0, 4):
+        for bounces in [int(word) for word in sys.argv[3:]] or [0, 4]:
             turns = [(who, render(folder, size, samples, bounces, seed)) for seed in (1, 2)
                      for who, render in (("Cycles", cycles), ("ours", ours))]
             work = {}

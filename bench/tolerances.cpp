@@ -47,7 +47,8 @@ double bytesOf(const Pipeline& pipeline, const Asset& asset, const std::string& 
 
 /// Sums over recipes of one tolerance.
 struct Shares {
-  double sum = 0.0, count = 0.0;
+  double sum = 0.0, count = 0.0;       // of the shares
+  double chosen = 0.0, recipes = 0.0;  // bytes of all files
 };
 
 /// One line of the table. Returns whether the tolerance holds.
@@ -65,7 +66,10 @@ bool measure(const Pipeline& pipeline, double tolerance, const Asked& asked, con
                 << " voxels\n";
   const double fresh =
       depthError(pipeline, finerThan(choice.asset), choice.asset, kChoiceRays, asked.seed, scratch);
-  const double bytes = bytesOf(pipeline, choice.asset, scratch) / bytesOf(pipeline, own, scratch);
+  const double chosenBytes = bytesOf(pipeline, choice.asset, scratch),
+               ownBytes = bytesOf(pipeline, own, scratch), bytes = chosenBytes / ownBytes;
+  shares.chosen += chosenBytes;
+  shares.recipes += ownBytes;
   shares.sum += bytes;
   shares.count += 1.0;
   const bool holds = fresh <= tolerance;
@@ -125,7 +129,9 @@ int run(const Asked& asked) {
   for (size_t t = 0; t < shares.size(); ++t)
     std::cout << "\n"
               << percent(asked.tolerances[t]) << ": bytes of the recipe's, on average "
-              << number(shares[t].sum / shares[t].count, 3) << " over " << shares[t].count << " samples\n";
+              << number(shares[t].sum / shares[t].count, 3) << " over " << shares[t].count
+              << " samples, of all files together " << number(shares[t].chosen / shares[t].recipes, 3)
+              << "\n";
   std::filesystem::remove_all(scratch);
   return allHold ? kExitDone : kExitNo;
 }
