@@ -58,6 +58,7 @@ struct PictureCost {
   double skipsChecked = 0.0;            // densities that march: { check_skips } read besides
   double skipsWrong = 0.0;              // of those, where a skip or a bound was wrong
   double relativeError = 0.0;           // the picture's own noise as relative RMSE, where the method knows it
+  double pathsPerPixel = 0.0;           // that truth was sampled by
 };
 
 /// One way to find radiance. Used from the thread that made it.

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 #include "scene/light_model.h"
@@ -53,6 +55,18 @@ PictureRequest sparseRequest(const ViewedScene& view, const PictureRequest& whol
   sparse.quiet = true;
   sparse.bounces = bouncesOfTruth(view, whole.bounces);
   return sparse;
+}
+
+/// What a unit of the march's work counts for beside truth's, which the processor does.
+double unitOn(const std::string& renderer) {
+  // A graphics processor is taken to read densities 100 times as fast as llvmpipe does. Which one it is does
+  // not count: the order of picks must not depend on the clock.
+  constexpr double kHardware = 0.01;
+  constexpr std::string_view kSoftware[] = {"llvmpipe", "softpipe", "swrast"};
+  const bool software =
+      renderer.empty() || std::any_of(std::begin(kSoftware), std::end(kSoftware),
+                                      [&](auto name) { return renderer.find(name) != std::string::npos; });
+  return software ? 1.0 : kHardware;
 }
 
 PictureRequest withSeed(PictureRequest request, unsigned seed) {
@@ -126,6 +140,7 @@ ErrorSearch::ErrorSearch(Method& march, Method& truth, const ViewedScene& view, 
       view_(view),
       sparse_(sparseRequest(view, whole)),
       share_(pixelsOf(whole, 1) / pixelsOf(whole, sparse_.stride)),
+      unit_(unitOn(march.renderer)),
       choosing_(truth, view, withSeed(sparse_, kChoosingSeed)),
       measuring_(truth, view, withSeed(sparse_, kMeasuringSeed)) {
   const std::vector<MarchCandidate> candidates = marchCandidates(view.scene);
@@ -210,13 +225,14 @@ ErrorPick ErrorSearch::pick(double error, size_t from) {
   constexpr double kStill = 0.93;
   std::map<size_t, double> reached;  // by candidate: with the most samples so far
   std::set<size_t> still;
-  const double truthMilliseconds = share_ * choosing_.millisecondsFor(error);
+  const double truthWork = share_ * choosing_.workFor(error);
   for (size_t i = 0; i < rungs_.size(); ++i) {
     ErrorRung& rung = rungs_[i];
     if (still.contains(rung.candidate)) continue;
-    if (rung.milliseconds >= truthMilliseconds) continue;
+    if (rung.work * unit_ >= truthWork) break;  // and so do all after it
     const bool good = passes(rung, error);
-    if (good && i >= from) return {rung.setting, rung.errors.back().high, rung.milliseconds, rung.work, i};
+    if (good && i >= from)
+      return {rung.setting, rung.errors.back().high, rung.milliseconds, unit_ * rung.work, i};
     const double found = rung.errors.front().relativeRmse;
     const auto [before, first] = reached.try_emplace(rung.candidate, found);
     if (!first && found > kStill * before->second) still.insert(rung.candidate);
@@ -225,7 +241,8 @@ ErrorPick ErrorSearch::pick(double error, size_t from) {
   ErrorPick truth;
   truth.setting.method = truth.setting.name = kTruth;
   truth.error = error;
-  truth.milliseconds = truthMilliseconds;
+  truth.milliseconds = share_ * choosing_.millisecondsFor(error);
+  truth.work = truthWork;
   return truth;
 }
 

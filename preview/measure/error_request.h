@@ -17,7 +17,7 @@ struct ErrorPick {
   Setting setting;
   double error = 0.0;         // expected, relative RMSE: the upper end of what was measured
   double milliseconds = 0.0;  // expected for the whole picture
-  double work = 0.0;          // expected of the whole picture, as workOf; 0 for the reference
+  double work = 0.0;          // expected of the whole picture, as workOf and workOfTruth
   size_t rung = 0;            // its place by work
 };
 
@@ -50,7 +50,7 @@ struct MarchCandidate {
 std::vector<MarchCandidate> marchCandidates(const Scene& scene);
 
 /// What a march costs, in densities read: these themselves, more where each asks the light cache as well, and
-/// each ray's way through the index. Counted, not timed: the same on every machine, under any load.
+/// each ray's way through the index. Counted, not timed: the same under any load.
 double workOf(const Setting& setting, double densitiesPreparing, double densities, double rays);
 
 /// Holds what was measured for one volume, camera, light and size. Methods have their volume set, and with
@@ -62,9 +62,9 @@ class ErrorSearch {
   ErrorSearch(Method& march, Method& truth, const ViewedScene& view, const PictureRequest& whole);
 
   /// Goes up by work, from the rung `from` on, until a setting's error, the upper end of its 95% interval, is
-  /// at most `error`; the reference where none is that is expected to take less time. Seeds, truth and order
-  /// do not depend on `error`, and what passes for a tight one passes for a looser one: so a looser one never
-  /// picks more work.
+  /// at most `error`; the reference where none is that is expected to take less work. Seeds, truth and order
+  /// do not depend on `error`, what passes for a tight one passes for a looser one, and truth's work never
+  /// grows with `error`: so a looser one never picks more work, whatever the clock says.
   ErrorPick pick(double error, size_t from = 0);
 
   struct Verdict {
@@ -93,6 +93,7 @@ class ErrorSearch {
   const ViewedScene& view_;
   PictureRequest sparse_;
   double share_;  // pixels of the whole picture over those of the sparse one
+  double unit_;   // of the march's work, in truth's
   TruthLadder choosing_, measuring_;
   std::vector<ErrorRung> rungs_;  // by work
 };

@@ -9,6 +9,14 @@
 
 namespace nephele {
 
+/// Samples a pixel at most where truth is asked for a noise: points in the medium have one that no number of
+/// samples takes away.
+inline constexpr unsigned kMostTruthSamples = 2048;
+
+/// What a picture of truth costs in densities that the march reads on the processor: looks at densities and
+/// paths, counted, not timed.
+double workOfTruth(double looks, double paths);
+
 /// Used from one thread. The method, its volume set, and the view outlive it.
 class TruthLadder {
  public:
@@ -23,8 +31,9 @@ class TruthLadder {
   /// `error` grows, and stepFor never grows, so that what passes for a tight error passes for a looser one.
   static double allowed(double error, size_t step);
   /// Expected of this sparse picture at a noise of `error`: from what the first step took, and no less than
-  /// what the least that truth can be asked takes.
-  double millisecondsFor(double error);
+  /// what the least that truth can be asked takes. It never grows with `error`.
+  double workFor(double error);          // counted, as workOfTruth has it
+  double millisecondsFor(double error);  // by the clock
 
  private:
   const Picture& at(size_t step);
@@ -35,8 +44,14 @@ class TruthLadder {
   PictureRequest sparse_;
   double fewPixels_ = 1.0;  // less noise than 8000 pixels need
   std::vector<Picture> steps_;
-  double millisecondsAtOne_ = 0.0;  // at a noise of 1, had it any
-  double millisecondsLeast_ = 0.0;
+  struct Cost {
+    double work = 0.0, milliseconds = 0.0;
+  };
+  Cost costOf(const PictureCost& cost) const;
+  void measureLeast();
+
+  Cost atOne_;  // at a noise of 1, had it any
+  Cost least_;
 };
 
 }  // namespace nephele

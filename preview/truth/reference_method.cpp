@@ -234,10 +234,10 @@ class ReferenceMethod : public Method {
     } else {
       Sampling sampling(*bricks_, view, request);
       constexpr unsigned kBlockTowardsError = 16;
+      const unsigned size = request.error > 0.0 ? kBlockTowardsError : blockSize(request.samples);
       if (request.error > 0.0) {
-        blocks = sampleUntil(sampling, request.error, kBlockTowardsError, request.mostSamples);
+        blocks = sampleUntil(sampling, request.error, size, request.mostSamples);
       } else {
-        const unsigned size = blockSize(request.samples);
         blocks = (request.samples + size - 1) / size;
         sampling.add(0, blocks, size);
       }
@@ -245,6 +245,7 @@ class ReferenceMethod : public Method {
       cost.densitySamplesPerPixel =
           static_cast<double>(sampling.looks()) / static_cast<double>(sampling.pixels());
       cost.relativeError = sampling.estimate().relativeError(blocks);
+      cost.pathsPerPixel = static_cast<double>(blocks) * size;
       cost.gpuBytes = 0;
     }
     cost.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();

@@ -13,6 +13,7 @@ namespace nephele {
 namespace {
 
 constexpr double kRadiance = 2.0;
+constexpr double kMillisecondsOfWork = 1e-6;
 
 /// Normal numbers by Box and Muller.
 class Normal {
@@ -60,7 +61,6 @@ class KnownMarch : public Method {
       for (size_t c = 0; c < 3; ++c)
         picture.planes[c][i] = static_cast<float>(
             kRadiance * (1.0 + bias(view.scene.march) + noise(request.samples) * normal()));
-    constexpr double kMillisecondsOfWork = 1e-6;
     Setting setting;
     setting.march = view.scene.march;
     setting.samples = request.samples;
@@ -77,7 +77,7 @@ class KnownMarch : public Method {
   truth::Random clockRandom_{3};
 };
 
-/// Truth in two noisy halves; costs what its noise says.
+/// Truth in two noisy halves; costs what its noise says, by a clock that is off as the march's is.
 class KnownTruth : public Method {
  public:
   explicit KnownTruth(double millisecondsForOnePercent) : atOnePercent_(millisecondsForOnePercent) {}
@@ -98,12 +98,17 @@ class KnownTruth : public Method {
         static_cast<double>(picture.planes[0].size()) / (double{1.0} * request.width * request.height);
     cost.relativeError = request.error;
     cost.milliseconds = share * std::max(least, atOnePercent_ * 1e-4 / (request.error * request.error));
+    cost.densitySamplesPerPixel = cost.milliseconds / kMillisecondsOfWork / workOfTruth(1.0, 0.0) /
+                                  static_cast<double>(picture.planes[0].size());
+    cost.milliseconds *= std::pow(clock, 2.0 * double{clockRandom_.uniform()} - 1.0);
     return picture;
   }
 
   double least = 0.0;  // milliseconds that any picture of this size takes
+  double clock = 1.0;
 
  private:
+  truth::Random clockRandom_{4};
   double atOnePercent_;
 };
 
@@ -138,6 +143,30 @@ TEST(ErrorRequest, KeepsItsWordAndALooserOneIsNeverDearer) {
     EXPECT_GE(pick.work, before) << error;
     before = pick.work;
   }
+}
+
+TEST(ErrorRequest, ALooserOneIsNeverDearerThanTheReferenceWhateverTheClockSays) {
+  Search search(1e4);
+  search.march.clock = search.truth.clock = 8.0;
+  double before = 0.0;
+  bool marched = false, traced = false;
+  for (double error = 0.2; error > 0.005; error *= 0.65) {
+    const ErrorPick pick = search.pick(error);
+    (pick.setting.method == "march" ? marched : traced) = true;
+    EXPECT_GE(pick.work, before) << error;
+    before = pick.work;
+  }
+  EXPECT_TRUE(marched);
+  EXPECT_TRUE(traced);
+}
+
+TEST(ErrorRequest, AGraphicsProcessorsWorkCountsForLess) {
+  Search search(100.0);
+  EXPECT_EQ(search.pick(0.03).setting.method, "reference");
+  search.march.renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
+  EXPECT_EQ(search.pick(0.03).setting.method, "reference");
+  search.march.renderer = "NVIDIA H100";
+  EXPECT_EQ(search.pick(0.03).setting.method, "march");
 }
 
 TEST(ErrorRequest, WhatPassesForATightErrorPassesForALooserOne) {
