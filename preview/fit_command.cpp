@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <memory>
 
@@ -39,13 +40,13 @@ Opened openSubject(const std::string& path, const Scene& scene, const FitCommand
 
 Table tableOf(const FitResult& result) {
   Table table{{"view", "fitted_to", "before", "before_low95", "before_high95", "after", "after_low95",
-               "after_high95"},
+               "after_high95", "at_best"},
               {}};
   for (const FitView& view : result.views)
     table.rows.push_back({view.name, view.fitted ? "1" : "0", std::to_string(view.before.relativeRmse),
                           std::to_string(view.before.low), std::to_string(view.before.high),
                           std::to_string(view.after.relativeRmse), std::to_string(view.after.low),
-                          std::to_string(view.after.high)});
+                          std::to_string(view.after.high), view.atBest ? std::to_string(*view.atBest) : ""});
   return table;
 }
 
@@ -71,14 +72,26 @@ std::string drawFit(const std::string& folder, const FitResult& result) {
 }
 
 void report(const FitResult& result) {
-  char text[128];
-  std::snprintf(text, sizeof text, "%d octaves: a %.3f, b %.3f, c %.3f", result.count, result.factors[0],
-                result.factors[1], result.factors[2]);
-  std::cout << text << '\n';
-  for (const bool fitted : {true, false})
-    std::cout << (fitted ? "views fitted to: " : "views held back: ")
-              << percent(errorOver(result.views, fitted, false)) << " before, "
-              << percent(errorOver(result.views, fitted, true)) << " after\n";
+  std::cout << result.count << " octaves\n";
+  for (size_t node = 0; node < result.factors.size(); ++node) {
+    const OctaveFactors& factors = result.factors[node];
+    char text[128];
+    std::snprintf(text, sizeof text, "sun at %.0f degrees: a %.3f, b %.3f, c %.3f\n", kFittedElevations[node],
+                  factors[0], factors[1], factors[2]);
+    std::cout << text;
+  }
+  const auto over = [](const char* name, const std::vector<FitView>& views, bool fitted) {
+    std::cout << name << ": " << percent(errorOver(views, fitted, FitStage::before)) << " before, "
+              << percent(errorOver(views, fitted, FitStage::after)) << " after";
+    const double atBest = errorOver(views, fitted, FitStage::atBest);
+    if (atBest > 0.0) std::cout << ", " << percent(atBest) << " by factors of each view's own";
+    std::cout << '\n';
+  };
+  std::vector<FitView> own, others;
+  for (const FitView& view : result.views) (view.atBest ? own : others).push_back(view);
+  over("views fitted to", own, true);
+  over("views held back", own, false);
+  if (!others.empty()) over("files not fitted to", others, false);
   std::cout << std::flush;
 }
 
@@ -100,6 +113,8 @@ int fitCommand(const FitCommandOptions& options) {
   FitOptions fitting;
   fitting.quiet = options.quiet;
   fitting.count = options.count;
+  fitting.width = options.width;
+  fitting.height = options.height;
   if (!fitting.count && scene.octaves.count.value_or(0) > 0) fitting.count = *scene.octaves.count;
   const double aspect = static_cast<double>(fitting.width) / fitting.height;
   std::vector<Opened> opened;  // owns what the subjects point at
@@ -128,8 +143,9 @@ int fitCommand(const FitCommandOptions& options) {
     std::cerr << "fit: nothing is stored; --even-if-worse stores them nevertheless\n";
     return kExitNo;
   }
-  std::map<std::string, double> numbers{{kFittedCount, result.count}};
-  for (size_t i = 0; i < result.factors.size(); ++i) numbers[kFittedFactors[i]] = result.factors[i];
+  std::map<std::string, std::vector<double>> numbers{{kFittedCount, {static_cast<double>(result.count)}}};
+  for (size_t i = 0; i < std::size(kFittedFactors); ++i)
+    for (const OctaveFactors& factors : result.factors) numbers[kFittedFactors[i]].push_back(factors[i]);
   for (const std::string& file : options.files) addMetadata(file, numbers);
   return kExitDone;
 }

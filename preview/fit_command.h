@@ -13,13 +13,15 @@ struct FitCommandOptions {
   std::vector<std::string> checks;  // that are measured alone
   std::string scene, grid, out;     // out: a folder for fit.csv, .svg, .png; empty: none
   std::optional<int> count;         // octaves; none: the scene's, else as few as do
+  int width = 48, height = 36;      // of each picture, pixels
   bool dryRun = false;              // write no metadata
   bool evenIfWorse = false;         // write it also where views held back get worse
   bool quiet = false;
 };
 
-/// Fits, prints the factors and errors before and after, and writes octaves_a, octaves_b and octaves_c into
-/// the metadata of each file. Throws InputError or WorldError. Returns the exit code 0.
+/// Fits, prints the factors and errors before and after, and writes octaves_a, octaves_b and octaves_c,
+/// each for three heights of the sun, into the metadata of each file. Throws InputError or WorldError.
+/// Returns the exit code 0.
 int fitCommand(const FitCommandOptions& options);
 
 }  // namespace nephele

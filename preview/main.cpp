@@ -40,7 +40,7 @@ std::pair<int, int> parseFrames(const std::string& text) {
 struct Arguments {
   RenderOptions render;
   std::string size = "960x540", windowSize = "1280x720", frames, error, filter = "hardware", tolerance, vram;
-  std::string picture, reference, chartSize = "128x72";
+  std::string picture, reference, chartSize = "128x72", fitSize = "48x36";
   ChartOptions chart;
   FitCommandOptions fit;
   double step = 0.0, exposure = 0.0;
@@ -139,6 +139,8 @@ void addFitOptions(CLI::App& app, Arguments& a) {
          "--octaves", a.fit.count,
          "Octaves beyond the first (default: the scene's, else the fewest that do nearly as well as 16)")
       ->check(CLI::Range(1, 16));
+  app.add_option("--size", a.fitSize, "Size of the pictures that are fitted to, pixels")
+      ->capture_default_str();
   app.add_flag("--dry-run", a.fit.dryRun, "Leave the files as they are");
   app.add_flag("--even-if-worse", a.fit.evenIfWorse,
                "Store factors that leave views held back worse than 0.5 does (else: exit code 3)");
@@ -196,7 +198,10 @@ int run(int argc, char** argv) {
     parseSize("--size", a.chartSize, a.chart.width, a.chart.height);
     return chartCommand(a.chart);
   }
-  if (fit->parsed()) return fitCommand(a.fit);
+  if (fit->parsed()) {
+    parseSize("--size", a.fitSize, a.fit.width, a.fit.height);
+    return fitCommand(a.fit);
+  }
   if (compare->parsed()) {
     std::optional<double> tolerance;
     if (!a.tolerance.empty()) tolerance = parseTolerance(a.tolerance);

@@ -11,6 +11,7 @@
 
 #include "preview/stage_places.h"
 #include "scene/light_model.h"
+#include "scene/sun_factors.h"
 
 namespace nephele {
 namespace {
@@ -195,19 +196,26 @@ std::optional<int> fittedCount(const BrickVolume& bricks) {
   return static_cast<int>(numbers[0]);
 }
 
-bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks) {
+bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks, double elevation) {
   if (octaves.factorsGiven || !bricks.metadata.contains(kFittedFactors[0])) return false;
-  double* const factors[] = {&octaves.a, &octaves.b, &octaves.c};
-  for (size_t i = 0; i < std::size(factors); ++i) {
+  SunFactors fitted{};
+  for (size_t i = 0; i < std::size(kFittedFactors); ++i) {
     const auto found = bricks.metadata.find(kFittedFactors[i]);
-    const std::vector<double> numbers =
+    std::vector<double> numbers =
         found == bricks.metadata.end() ? std::vector<double>{} : numbersIn(found->second);
-    if (numbers.size() != 1 || !(numbers[0] >= 0.0 && numbers[0] <= 1.0))
+    if (numbers.size() == 1) numbers.resize(fitted.size(), numbers.front());
+    const bool factors =
+        std::all_of(numbers.begin(), numbers.end(), [](double v) { return v >= 0.0 && v <= 1.0; });
+    if (numbers.size() != fitted.size() || !factors)
       throw InputError({bricks.path}, std::string("the metadata '") + kFittedFactors[i] +
-                                          "' should be a number from 0 to 1");
-    *factors[i] = numbers[0];
+                                          "' should be one or three numbers from 0 to 1");
+    for (size_t node = 0; node < fitted.size(); ++node) fitted[node][i] = numbers[node];
   }
-  if (const std::optional<int> fitted = fittedCount(bricks); fitted && !octaves.count) octaves.count = fitted;
+  const OctaveFactors taken = factorsAt(fitted, elevation);
+  octaves.a = taken[0];
+  octaves.b = taken[1];
+  octaves.c = taken[2];
+  if (const std::optional<int> count = fittedCount(bricks); count && !octaves.count) octaves.count = count;
   return true;
 }
 
@@ -216,11 +224,13 @@ ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double a
   ChosenMedium chosen = chooseMedium(scene, bricks);
   mediumSentence = std::move(chosen.sentence);
   ViewedScene view{scene, Camera{}, chosen.medium, upOf(bricks), nullptr};
+  turnLights(view.scene, view.up);
   const bool scatters = lightModelOf(scene, view.medium).octaveCount > 0;
-  if (scatters && takeFittedFactors(view.scene.octaves, bricks)) {
+  const double elevation = sunElevation(view.scene, view.up);
+  if (scatters && takeFittedFactors(view.scene.octaves, bricks, elevation)) {
     std::ostringstream fitted;
-    fitted << "\noctaves: as fitted to the file: a " << view.scene.octaves.a << ", b " << view.scene.octaves.b
-           << ", c " << view.scene.octaves.c;
+    fitted << "\noctaves: as fitted to the file for a sun at " << std::round(elevation) << " degrees: a "
+           << view.scene.octaves.a << ", b " << view.scene.octaves.b << ", c " << view.scene.octaves.c;
     const std::optional<int> count = fittedCount(bricks);
     if (count && count != view.scene.octaves.count)
       fitted << " (fitted for " << *count << " orders beyond the first, the scene asks for "
@@ -229,7 +239,6 @@ ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double a
   }
   if (scene.environment.kind == Environment::Kind::exr)
     view.environmentMap = loadEnvironmentMap(scene.environment.exr.path);
-  turnLights(view.scene, view.up);
   if (scene.camera) {
     view.camera = *scene.camera;
     if (!scene.cameraUpGiven) view.camera.up = view.up;

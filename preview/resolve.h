@@ -45,7 +45,8 @@ glm::dvec3 turnedTo(const glm::dvec3& up, const glm::dvec3& direction);
 /// Turns lights that follow up to where `up` is; they stay so.
 void turnLights(Scene& scene, const glm::dvec3& up);
 
-/// Names of the factors of octaves that `nephele-preview fit` leaves in a file's metadata: a, b, c.
+/// Names of the factors of octaves that `nephele-preview fit` leaves in a file's metadata: a, b, c. Each is
+/// one number for all suns, or three, for suns at kFittedElevations.
 inline constexpr const char* kFittedFactors[] = {"octaves_a", "octaves_b", "octaves_c"};
 
 /// Name of how many orders beyond the first they were fitted for.
@@ -56,9 +57,9 @@ inline constexpr const char* kFittedCount = "octaves_count";
 std::optional<int> fittedCount(const BrickVolume& bricks);
 
 /// Octaves whose factors (and, with them, whose number) the scene leaves open take those that were fitted to
-/// the file, where it holds them. Returns whether it does. Throws InputError where they are no factors in [0,
-/// 1].
-bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks);
+/// the file for a sun at `elevation` (degrees, as sunElevation has it), where it holds them. Returns whether
+/// it does. Throws InputError where they are no factors in [0, 1].
+bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks, double elevation);
 
 /// Camera and medium of a scene, given or chosen; the file's up; the environment's picture, read. A camera
 /// without `up` takes the file's. Lights that follow up are turned, and stay so. Throws InputError for an

@@ -14,6 +14,8 @@
 #include "preview/measure/trust.h"
 #include "preview/resolve.h"
 #include "preview/temperature.h"
+#include "scene/light_model.h"
+#include "scene/sun_factors.h"
 
 namespace nephele {
 namespace {
@@ -121,10 +123,17 @@ void Desk::restart() {
     document_.chooseHeat(state_.settings.scene.emission.grid);
   if (width_ < 1 || height_ < 1) return;
   followLive();
+  followSun();
   viewer_.setGoal(state_.goal);
   viewer_.restart(Side::edited, request(state_.settings));
   if (state_.kept) viewer_.restart(Side::kept, request(*state_.kept));
   if (known) writeStats();
+}
+
+void Desk::followSun() {
+  Scene& scene = state_.settings.scene;
+  if (lightModelOf(scene, state_.settings.medium).octaveCount > 0)
+    takeFittedFactors(scene.octaves, document_.volume(), sunElevation(scene, state_.up));
 }
 
 std::array<Shown, kSideCount> Desk::shown() const {

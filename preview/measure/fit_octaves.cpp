@@ -2,7 +2,9 @@
 #include "preview/measure/fit_octaves.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -10,6 +12,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "preview/measure/least_point.h"
+#include "preview/measure/truth_ladder.h"
 
 namespace nephele {
 namespace {
@@ -18,7 +21,6 @@ using glm::dvec3;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr unsigned kTruthSeed = 0x4669u;
-constexpr unsigned kMostTruthSamples = 2048;
 constexpr double kIrradiance = 3.0;
 
 /// Where camera and sun stand about the subject, degrees: azimuths, and elevations above the ground.
@@ -27,11 +29,18 @@ struct Station {
   bool fitted;
 };
 
-/// From all sides, the sun from behind the camera to behind the cloud, from high to low.
+constexpr double kLow = kFittedElevations[0], kMiddle = kFittedElevations[1], kHigh = kFittedElevations[2];
+
+/// From all sides; at each height of the sun it stands behind the camera, to one side, and behind the cloud.
+/// What is held back shares no camera with what is fitted to, and no sun.
 constexpr Station kStations[] = {
-    {0, -8, 40, 45, true},     {60, 15, 0, 20, true},    {120, 0, 270, 35, true}, {180, 30, 270, 70, true},
-    {240, -5, 120, 10, true},  {300, 10, 120, 30, true}, {30, 5, 10, 30, false},  {150, 20, 270, 55, false},
-    {210, -10, 50, 20, false}, {270, 0, 330, 5, false}};
+    {0, -8, 15, kLow, true},      {80, 15, 160, kLow, true},    {170, 0, 35, kLow, true},
+    {250, 5, 70, kLow, true},     {45, 10, 65, kMiddle, true},  {120, -5, 210, kMiddle, true},
+    {200, 20, 75, kMiddle, true}, {310, 0, 140, kMiddle, true}, {60, 0, 90, kHigh, true},
+    {155, 25, 75, kHigh, true},   {230, -8, 5, kHigh, true},    {340, 8, 165, kHigh, true},
+    {30, 5, 10, 30, false},       {150, 20, 270, 55, false},    {210, -10, 50, 20, false},
+    {270, 0, 330, 5, false},      {100, 12, 55, 75, false},     {330, 25, 180, 12, false},
+    {10, -6, 110, 40, false},     {75, 30, 235, 3, false}};
 
 /// Unit; azimuth 0 looks from where the view's camera stands, at elevation 0.
 dvec3 directionAt(const ViewedScene& view, double azimuth, double elevation) {
@@ -83,10 +92,12 @@ class Fit {
         FitView view{s,
                      subjects_[s].name,
                      station.fitted && s < checksFrom,
+                     station.sunUp,
                      viewAt(subjects_[s].view, station),
                      {},
                      {},
-                     {}};
+                     {},
+                     std::nullopt};
         view.name += " camera " + std::to_string(static_cast<int>(station.camera)) + ", sun " +
                      std::to_string(static_cast<int>(station.sun)) + "/" +
                      std::to_string(static_cast<int>(station.sunUp));
@@ -111,18 +122,17 @@ class Fit {
     return compareWithHalves(march_.render(view.view, requestOf(), cost), view.truth);
   }
 
-  /// The squared errors of all views that are fitted to, for any factors.
-  OctaveForm form() {
-    Progress progress("orders", views.size(), options_.quiet);
-    OctaveForm sum;
+  /// The squared errors of each view of the subjects before `checksFrom`, for any factors.
+  std::vector<OctaveForm> forms(size_t checksFrom) {
+    Progress progress("orders", checksFrom * std::size(kStations), options_.quiet);
+    std::vector<OctaveForm> each;
     for (const FitView& view : views) {
-      if (view.fitted) {
-        take(view.subject);
-        sum.add(OctaveForm::of(march_, view.view, requestOf(), view.truth));
-      }
+      if (view.subject >= checksFrom) break;  // they come last
+      take(view.subject);
+      each.push_back(OctaveForm::of(march_, view.view, requestOf(), view.truth));
       progress.advance();
     }
-    return sum;
+    return each;
   }
 
   std::vector<FitView> views;
@@ -151,49 +161,97 @@ class Fit {
   size_t loaded_ = std::numeric_limits<size_t>::max();
 };
 
-struct FittedFactors {
-  OctaveFactors factors;
-  int count;
-  double error;  // root mean square over the views, times the root of how many they are
+/// Sums over the views that are fitted to: of all suns, and of those at each of kFittedElevations.
+struct FittedForms {
+  OctaveForm all;
+  std::array<OctaveForm, kFittedElevations.size()> at;
+  std::array<double, kFittedElevations.size()> views{};
 };
 
-FittedFactors fittedTo(const OctaveForm& form, int count) {
-  constexpr int kSide = 11;
+FittedForms sumOf(const std::vector<FitView>& views, const std::vector<OctaveForm>& forms) {
+  FittedForms sum;
+  for (size_t i = 0; i < forms.size(); ++i) {
+    if (!views[i].fitted) continue;
+    sum.all.add(forms[i]);
+    const size_t node = static_cast<size_t>(
+        std::find(kFittedElevations.begin(), kFittedElevations.end(), views[i].elevation) -
+        kFittedElevations.begin());
+    NEPHELE_CHECK_EQ(node < kFittedElevations.size(), true);
+    sum.at[node].add(forms[i]);
+    sum.views[node] += 1.0;
+  }
+  return sum;
+}
+
+OctaveFactors leastFactors(const std::function<double(const OctaveFactors&)>& cost) {
+  constexpr int kSide = 7;
   constexpr double kTolerance = 1e-4;
   constexpr size_t kMost = 400;
-  const auto cost = [&](const OctaveFactors& factors) { return form.at(factors, count); };
-  const OctaveFactors factors = leastOfCube(cost, kSide, kTolerance, kMost);
-  return {factors, count, std::sqrt(std::max(cost(factors), 0.0))};
+  return leastOfCube(cost, kSide, kTolerance, kMost);
+}
+
+struct Fitted {
+  SunFactors factors;
+  int count;
+  double square = 0.0;  // the sum over the views
+};
+
+Fitted fittedTo(const FittedForms& forms, int count) {
+  // Valleys are long and flat: so that factors between two heights are good ones too, those of each height
+  // keep near those of all. An apartness of 1 counts as a squared error of kTie.
+  constexpr double kTie = 0.03;
+  const OctaveFactors all =
+      leastFactors([&](const OctaveFactors& factors) { return forms.all.at(factors, count); });
+  Fitted fitted{{}, count, 0.0};
+  for (size_t node = 0; node < fitted.factors.size(); ++node) {
+    fitted.factors[node] = leastFactors([&](const OctaveFactors& factors) {
+      double apart = 0.0;
+      for (size_t i = 0; i < all.size(); ++i) apart += (factors[i] - all[i]) * (factors[i] - all[i]);
+      return forms.at[node].at(factors, count) + kTie * forms.views[node] * apart;
+    });
+    fitted.square += forms.at[node].at(fitted.factors[node], count);
+  }
+  return fitted;
 }
 
 /// The fewest octaves whose error is within a share of the least.
-FittedFactors fewestFittedTo(const OctaveForm& form) {
+Fitted fewestFittedTo(const FittedForms& forms) {
   constexpr double kNearly = 1.03;
-  std::vector<FittedFactors> all;
+  std::vector<Fitted> all;
   double least = std::numeric_limits<double>::infinity();
   for (int count = 1; count <= kMostOctaveCount; ++count) {
-    all.push_back(fittedTo(form, count));
-    least = std::min(least, all.back().error);
+    all.push_back(fittedTo(forms, count));
+    least = std::min(least, all.back().square);
   }
   return *std::find_if(all.begin(), all.end(),
-                       [&](const FittedFactors& f) { return f.error <= kNearly * least; });
+                       [&](const Fitted& f) { return f.square <= kNearly * kNearly * std::max(least, 0.0); });
+}
+
+double bestOf(const OctaveForm& form, int count) {
+  const auto cost = [&](const OctaveFactors& factors) { return form.at(factors, count); };
+  return std::sqrt(std::max(cost(leastFactors(cost)), 0.0));
+}
+
+std::optional<double> errorAt(const FitView& view, FitStage stage) {
+  if (stage == FitStage::atBest) return view.atBest;
+  return (stage == FitStage::after ? view.after : view.before).relativeRmse;
 }
 
 }  // namespace
 
-double errorOver(const std::vector<FitView>& views, bool fitted, bool after) {
+double errorOver(const std::vector<FitView>& views, bool fitted, FitStage stage) {
   double sum = 0.0, count = 0.0;
   for (const FitView& view : views) {
-    if (view.fitted != fitted) continue;
-    const double error = (after ? view.after : view.before).relativeRmse;
-    sum += error * error;
+    const std::optional<double> error = errorAt(view, stage);
+    if (view.fitted != fitted || !error) continue;
+    sum += *error * *error;
     count += 1.0;
   }
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
 bool worsensHeldBack(const std::vector<FitView>& views) {
-  return errorOver(views, false, true) > errorOver(views, false, false);
+  return errorOver(views, false, FitStage::after) > errorOver(views, false, FitStage::before);
 }
 
 FitResult fitOctaves(Method& march, Method& truth, const std::vector<FitSubject>& subjects,
@@ -202,14 +260,17 @@ FitResult fitOctaves(Method& march, Method& truth, const std::vector<FitSubject>
   all.insert(all.end(), checks.begin(), checks.end());
   Fit fit(march, truth, std::move(all), options);
   fit.addViews(subjects.size());
-  const OctaveForm form = fit.form();
+  const std::vector<OctaveForm> forms = fit.forms(subjects.size());
+  const FittedForms sum = sumOf(fit.views, forms);
+  const Fitted fitted = options.count ? fittedTo(sum, *options.count) : fewestFittedTo(sum);
   FitResult result;
-  const FittedFactors fitted = options.count ? fittedTo(form, *options.count) : fewestFittedTo(form);
   result.factors = fitted.factors;
   result.count = fitted.count;
-  for (FitView& view : fit.views) {
+  for (size_t i = 0; i < fit.views.size(); ++i) {
+    FitView& view = fit.views[i];
     view.before = fit.errorOf(view, kUnfittedFactors, result.count);
-    view.after = fit.errorOf(view, result.factors, result.count);
+    view.after = fit.errorOf(view, factorsAt(result.factors, view.elevation), result.count);
+    if (i < forms.size()) view.atBest = bestOf(forms[i], result.count);
   }
   result.views = std::move(fit.views);
   return result;

@@ -2,6 +2,7 @@
 #include "preview/measure/octave_form.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -2,14 +2,12 @@
 // order is linear in light. Depends on preview/method.h, scene and preview/measure alone.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "preview/method.h"
+#include "scene/sun_factors.h"
 
 namespace nephele {
-
-using OctaveFactors = std::array<double, 3>;  // a, b, c, each in [0, 1]
 
 /// The mean square of relative errors over views as a quadratic form of what orders weigh at nodes: at shares
 /// of the extinction towards the light (1, ½, ¼ … and 0) times shares of the asymmetry (nodes of Chebyshev in

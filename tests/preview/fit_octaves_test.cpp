@@ -64,6 +64,7 @@ double radianceAt(const Octaves& octaves, size_t pixel, double azimuth) {
 }
 
 constexpr Octaves kTrue{6, 0.7, 0.35, 0.4, true};
+constexpr double kMiddleSun = kFittedElevations[1];
 
 class KnownOctaves : public Method {
  public:
@@ -79,7 +80,7 @@ class KnownOctaves : public Method {
     picture.planes[3].assign(picture.planes[3].size(), 1.0f);
     truth::Random random(request.seed + 1);
     for (size_t i = 0; i < picture.planes[0].size(); ++i) {
-      const double radiance = radianceAt(isTruth_ ? kTrue : view.scene.octaves, i, view.camera.position.x);
+      const double radiance = radianceAt(isTruth_ ? octaves_ : view.scene.octaves, i, view.camera.position.x);
       for (size_t c = 0; c < 3; ++c) {
         picture.planes[c][i] = static_cast<float>(radiance);
         for (const size_t half : {size_t{4}, size_t{7}})
@@ -89,6 +90,9 @@ class KnownOctaves : public Method {
     }
     return picture;
   }
+
+ protected:
+  Octaves octaves_ = kTrue;  // truth's
 
  private:
   bool isTruth_;
@@ -125,7 +129,7 @@ TEST(FitOctaves, WithoutACountTakesTheFewestThatDoNearlyAsWell) {
   const FitResult free = fitOctaves(march, truth, {{"known", &bricks, ViewedScene{}}}, {}, options);
   EXPECT_GE(free.count, 2);
   EXPECT_LE(free.count, *kTrue.count);
-  EXPECT_LT(errorOver(free.views, false, true), 0.02);
+  EXPECT_LT(errorOver(free.views, false, FitStage::after), 0.02);
 }
 
 TEST(FitOctaves, RecoversKnownFactorsThroughNoiseAndHalvesTheErrorOfTheUnfitted) {
@@ -135,14 +139,66 @@ TEST(FitOctaves, RecoversKnownFactorsThroughNoiseAndHalvesTheErrorOfTheUnfitted)
   options.quiet = true;
   options.count = kTrue.count;
   const FitResult result = fitOctaves(march, truth, {{"known", &bricks, ViewedScene{}}}, {}, options);
-  EXPECT_NEAR(result.factors[0], kTrue.a, 0.05);
-  EXPECT_NEAR(result.factors[1], kTrue.b, 0.05);
-  EXPECT_NEAR(result.factors[2], kTrue.c, 0.1);
+  for (const OctaveFactors& factors : result.factors) {
+    EXPECT_NEAR(factors[0], kTrue.a, 0.05);
+    EXPECT_NEAR(factors[1], kTrue.b, 0.05);
+    EXPECT_NEAR(factors[2], kTrue.c, 0.1);
+  }
   size_t held = 0;
   for (const FitView& view : result.views) held += view.fitted ? 0 : 1;
-  EXPECT_EQ(held, 4u);
+  EXPECT_EQ(held, 8u);
   for (const bool fitted : {true, false})
-    EXPECT_LT(errorOver(result.views, fitted, true), 0.5 * errorOver(result.views, fitted, false));
+    EXPECT_LT(errorOver(result.views, fitted, FitStage::after),
+              0.5 * errorOver(result.views, fitted, FitStage::before));
+}
+
+/// Truth whose factors follow the sun's height: what no one set can be.
+class FollowsTheSun : public KnownOctaves {
+ public:
+  explicit FollowsTheSun(bool isTruth) : KnownOctaves(isTruth) {}
+  static OctaveFactors factorsOf(double elevation) { return factorsAt(kFactors, elevation); }
+  Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
+    const OctaveFactors f = factorsOf(sunElevation(view.scene, view.up));
+    octaves_ = {kTrue.count, f[0], f[1], f[2], true};
+    return KnownOctaves::render(view, request, cost);
+  }
+  static constexpr SunFactors kFactors{{{0.3, 0.5, 0.4}, {0.6, 0.4, 0.4}, {0.8, 0.7, 0.4}}};
+};
+
+TEST(FitOctaves, FactorsFollowTheSunsHeight) {
+  KnownOctaves march(false);
+  FollowsTheSun truth(true);
+  const BrickVolume bricks;
+  FitOptions options;
+  options.quiet = true;
+  options.count = kTrue.count;
+  const FitResult result = fitOctaves(march, truth, {{"known", &bricks, ViewedScene{}}}, {}, options);
+  for (size_t node = 0; node < result.factors.size(); ++node)
+    for (size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(result.factors[node][i], FollowsTheSun::kFactors[node][i], 0.12) << node << ' ' << i;
+  EXPECT_LT(errorOver(result.views, false, FitStage::after), 0.1);
+  EXPECT_LT(errorOver(result.views, false, FitStage::atBest), 0.02);
+}
+
+TEST(FitOctaves, FactorsAreLinearBetweenHeightsOfTheSunAndHoldBeyond) {
+  constexpr SunFactors kFactors{{{0.0, 0.2, 1.0}, {0.5, 0.4, 0.0}, {1.0, 0.4, 0.5}}};
+  const auto [low, middle, high] = kFittedElevations;
+  EXPECT_EQ(factorsAt(kFactors, low), kFactors[0]);
+  EXPECT_EQ(factorsAt(kFactors, middle), kFactors[1]);
+  EXPECT_EQ(factorsAt(kFactors, -high), kFactors[2]);  // from below as from above
+  EXPECT_EQ(factorsAt(kFactors, 0.0), kFactors[0]);
+  EXPECT_EQ(factorsAt(kFactors, 90.0), kFactors[2]);
+  EXPECT_DOUBLE_EQ(factorsAt(kFactors, 0.75 * low + 0.25 * middle)[0], 0.125);
+  EXPECT_DOUBLE_EQ(factorsAt(kFactors, 0.5 * (middle + high))[2], 0.25);
+}
+
+TEST(FitOctaves, TheBrightestSunIsTheOneThatFactorsFollow) {
+  const glm::dvec3 up{0.0, 1.0, 0.0};
+  Scene scene;
+  scene.lights = {};
+  EXPECT_EQ(sunElevation(scene, up), kFittedElevations[1]);
+  scene.lights = {PointLight{}, Sun{{0.0, 3.0, 4.0}, {1.0, 1.0, 1.0}}, Sun{{1.0, 0.0, 0.0}, {0.0, 2.0, 0.0}}};
+  EXPECT_NEAR(sunElevation(scene, up), 180.0 / 3.141592653589793 * std::asin(0.6), 1e-9);
 }
 
 TEST(FitOctaves, SaysWhereViewsHeldBackGetWorse) {
@@ -161,30 +217,34 @@ TEST(FitOctaves, SaysWhereViewsHeldBackGetWorse) {
 TEST(FitOctaves, ASceneTakesTheFilesFactorsWhereItGivesNone) {
   BrickVolume bricks;
   Octaves octaves;
-  EXPECT_FALSE(takeFittedFactors(octaves, bricks));
+  EXPECT_FALSE(takeFittedFactors(octaves, bricks, kMiddleSun));
   bricks.metadata = {{"octaves_a", "0.25"}, {"octaves_b", "0.75"}, {"octaves_c", "1"}};
-  EXPECT_TRUE(takeFittedFactors(octaves, bricks));
+  EXPECT_TRUE(takeFittedFactors(octaves, bricks, kMiddleSun));
   EXPECT_EQ(octaves.a, 0.25);
   EXPECT_EQ(octaves.b, 0.75);
   EXPECT_EQ(octaves.c, 1.0);
   EXPECT_FALSE(octaves.count);
   Octaves given{3, 0.1, 0.2, 0.3, true};
-  EXPECT_FALSE(takeFittedFactors(given, bricks));
+  EXPECT_FALSE(takeFittedFactors(given, bricks, kMiddleSun));
   EXPECT_EQ(given.a, 0.1);
+  bricks.metadata["octaves_a"] = "[0.25, 0.5, 1]";
+  EXPECT_TRUE(takeFittedFactors(octaves, bricks, kFittedElevations[2]));
+  EXPECT_EQ(octaves.a, 1.0);
+  EXPECT_EQ(octaves.b, 0.75);
   bricks.metadata["octaves_count"] = "9";
-  EXPECT_TRUE(takeFittedFactors(octaves, bricks));
+  EXPECT_TRUE(takeFittedFactors(octaves, bricks, kMiddleSun));
   EXPECT_EQ(octaves.count, 9);
   Octaves counted{3, 0.5, 0.5, 0.5, false};
-  EXPECT_TRUE(takeFittedFactors(counted, bricks));
+  EXPECT_TRUE(takeFittedFactors(counted, bricks, kMiddleSun));
   EXPECT_EQ(counted.count, 3);
   for (const char* wrong : {"17", "2.5", "-1", "many"}) {
     bricks.metadata["octaves_count"] = wrong;
     Octaves open;
-    EXPECT_THROW(takeFittedFactors(open, bricks), InputError) << wrong;
+    EXPECT_THROW(takeFittedFactors(open, bricks, kMiddleSun), InputError) << wrong;
   }
   bricks.metadata.erase("octaves_count");
   bricks.metadata["octaves_b"] = "1.5";
-  EXPECT_THROW(takeFittedFactors(octaves, bricks), InputError);
+  EXPECT_THROW(takeFittedFactors(octaves, bricks, kMiddleSun), InputError);
 }
 
 }  // namespace

@@ -42,18 +42,18 @@ TEST(VdbFile, NumbersAreAddedToItsMetadataAndAllElseStays) {
   provenance.recipeHash = "abc";
   writeVdb(path, {grid, velocity}, provenance);
   auto before = metadataAsText(*readVdb(path).metadata);
-  addMetadata(path, {{"octaves_a", 0.25}, {"octaves_b", 0.5}});
-  addMetadata(path, {{"octaves_a", 0.75}});
+  addMetadata(path, {{"octaves_a", std::vector{0.25}}, {"octaves_b", std::vector{0.5, 0.25, 1.0}}});
+  addMetadata(path, {{"octaves_a", std::vector{0.75}}});
   const VdbContents after = readVdb(path);
   before["octaves_a"] = "0.75";
-  before["octaves_b"] = "0.5";
+  before["octaves_b"] = "[0.5, 0.25, 1]";
   EXPECT_EQ(metadataAsText(*after.metadata), before);
   ASSERT_EQ(after.grids->size(), 2u);
   EXPECT_EQ(contentHash(*after.grids->at(0)), contentHash(*grid));
   EXPECT_EQ(contentHash(*after.grids->at(1)), contentHash(*velocity));
   EXPECT_TRUE(after.grids->at(1)->saveFloatAsHalf());
   EXPECT_EQ(scratch.fileCount(), 1);
-  EXPECT_THROW(addMetadata(scratch.file("nowhere.vdb"), {{"a", 1.0}}), InputError);
+  EXPECT_THROW(addMetadata(scratch.file("nowhere.vdb"), {{"a", std::vector{1.0}}}), InputError);
 }
 
 /// The file's bytes from its first transform on: all that has neither a random number nor the hints for
