@@ -22,6 +22,7 @@ class Pattern {
       for (int x = -kReach; x <= kReach; ++x)
         // Whole numbers: sums then do not depend on the order of changes.
         kernel_.push_back(std::lround(kOne * std::exp(-(x * x + y * y) / (2.0 * kDeviation * kDeviation))));
+    for (int row = 0; row < edge_; ++row) extremes_.push_back(extremesOf(row));
   }
 
   void set(size_t at, bool point) {
@@ -33,20 +34,44 @@ class Pattern {
         const int wx = (x0 + x + edge_) % edge_, wy = (y0 + y + edge_) % edge_;
         crowding_[static_cast<size_t>(wy * edge_ + wx)] += point ? kernel_[k] : -kernel_[k];
       }
+    for (int y = -kReach; y <= kReach; ++y) {
+      const int row = (y0 + y + edge_) % edge_;
+      extremes_[static_cast<size_t>(row)] = extremesOf(row);
+    }
   }
 
   /// The point in the thickest crowd, or the free place in the widest void.
-  size_t tightest() const { return extreme(true, 1); }
-  size_t widest() const { return extreme(false, -1); }
+  size_t tightest() const { return extreme(&Extremes::tightest, 1); }
+  size_t widest() const { return extreme(&Extremes::widest, -1); }
   size_t size() const { return points_.size(); }
   bool has(size_t at) const { return points_[at]; }
 
  private:
-  size_t extreme(bool point, int64_t sign) const {
+  /// Of one row; points_.size() where it has no such place. Rows change seldom: most are looked up.
+  struct Extremes {
+    size_t tightest = 0, widest = 0;
+  };
+
+  Extremes extremesOf(int row) const {
+    const size_t edge = static_cast<size_t>(edge_), first = static_cast<size_t>(row) * edge;
+    const size_t none = points_.size();
+    Extremes found{none, none};
+    for (size_t i = first; i < first + edge; ++i) {
+      size_t& best = points_[i] ? found.tightest : found.widest;
+      const bool further =
+          best == none || (points_[i] ? crowding_[i] > crowding_[best] : crowding_[i] < crowding_[best]);
+      if (further) best = i;
+    }
+    return found;
+  }
+
+  size_t extreme(size_t Extremes::*which, int64_t sign) const {
     size_t best = points_.size();
-    for (size_t i = 0; i < points_.size(); ++i)
-      if (points_[i] == point && (best == points_.size() || sign * crowding_[i] > sign * crowding_[best]))
-        best = i;
+    for (const Extremes& row : extremes_) {
+      const size_t at = row.*which;
+      if (at == points_.size()) continue;
+      if (best == points_.size() || sign * crowding_[at] > sign * crowding_[best]) best = at;
+    }
     return best;
   }
 
@@ -55,6 +80,7 @@ class Pattern {
   std::vector<bool> points_;
   std::vector<int64_t> crowding_;
   std::vector<int64_t> kernel_;
+  std::vector<Extremes> extremes_;  // per row
 };
 
 /// A tenth of all places, scattered by a recurrence and then moved from crowds into voids until that changes

@@ -29,21 +29,23 @@ struct SlotFacts {
   double error = 0.0, relative = 0.0, sum = 0.0;
 };
 
-SlotFacts factsOf(const float* samples, Texel texel, float maximum) {
+template <Texel texel>
+SlotFacts factsOf(const float* samples, float maximum) {
   const float scale = brick_bounds::bound(
       brick_bounds::codeFor(*std::max_element(samples, samples + kBrickVolume), maximum), maximum);
   // Of a half's normal values; what goes beyond it is counted as it is.
   constexpr double kHalfRelative = 0x1p-11, kTiny = 1e-300;
-  const double allowed = texel == Texel::r16f ? kHalfRelative : 0.0;
+  constexpr double allowed = texel == Texel::r16f ? kHalfRelative : 0.0;
   SlotFacts facts;
   for (int z = 0; z < kBrickSamples; ++z)
     for (int y = 0; y < kBrickSamples; ++y)
       for (int x = 0; x < kBrickSamples; ++x, ++samples) {
         const double value = double{*samples};
+        if (std::max({x, y, z}) < kBrickCells) facts.sum += value;
         const double error = std::abs(double{keptAs(texel, *samples, scale)} - value);
+        if (!(error > 0.0)) continue;  // most samples of a file of halves
         facts.relative = std::max(facts.relative, std::min(error, allowed * value) / std::max(value, kTiny));
         facts.error = std::max(facts.error, error - allowed * value);
-        if (std::max({x, y, z}) < kBrickCells) facts.sum += double{*samples};
       }
   return facts;
 }
@@ -103,8 +105,10 @@ double texelError(const BrickVolume& volume, Texel texel) {
   if (texel == Texel::r32f || volume.empty()) return 0.0;
   std::vector<SlotFacts> facts(volume.slotCount());
   tbb::parallel_for(size_t{0}, facts.size(), [&](size_t slot) {
+    const float* samples = volume.samples.data() + slot * kBrickVolume;
+    const float maximum = static_cast<float>(volume.maximum);
     facts[slot] =
-        factsOf(volume.samples.data() + slot * kBrickVolume, texel, static_cast<float>(volume.maximum));
+        texel == Texel::r8 ? factsOf<Texel::r8>(samples, maximum) : factsOf<Texel::r16f>(samples, maximum);
   });
   const glm::ivec3 n = volume.brickCount;
   double worst = 0.0, deepest = 0.0, relative = 0.0;

@@ -62,8 +62,9 @@ struct Examined {
 
 Examined examine(const Leaf& leaf) {
   Examined result;
+  const float* values = leaf.buffer().data();
   for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
-    const float value = leaf.getValue(i);
+    const float value = values[i];
     if (!std::isfinite(value)) {
       if (result.allFinite) result.notFinite = leaf.offsetToGlobalCoord(i);
       result.allFinite = false;
@@ -211,13 +212,13 @@ class TreeSource : public BrickSource {
     const int step[3] = {corner & 1, corner >> 1 & 1, corner >> 2};
     int count[3];  // the cube itself gives eight samples along an axis, the next one its first
     for (int axis = 0; axis < 3; ++axis) count[axis] = step[axis] ? 1 : kBrickCells;
+    const float* values = from.leaf ? from.leaf->buffer().data() : nullptr;
     for (int z = 0; z < count[2]; ++z)
       for (int y = 0; y < count[1]; ++y)
         for (int x = 0; x < count[0]; ++x) {
           const int sx = x + step[0] * kBrickCells, sy = y + step[1] * kBrickCells,
                     sz = z + step[2] * kBrickCells;
-          const float value =
-              from.leaf ? from.leaf->getValue(Leaf::coordToOffset(Coord(x, y, z))) : from.constant;
+          const float value = values ? values[Leaf::coordToOffset(Coord(x, y, z))] : from.constant;
           samples[(sz * kBrickSamples + sy) * kBrickSamples + sx] = std::max(0.0f, value);
         }
   }
