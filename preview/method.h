@@ -48,6 +48,7 @@ constexpr int strided(int length, int stride) { return (length - stride / 2 + st
 struct PictureCost {
   double milliseconds = 0.0;            // from the first draw to the last pixel read back
   double millisecondsPreparing = 0.0;   // of these, what does not grow with pixels and samples
+  double millisecondsUpload = 0.0;      // of these, bricks to the GPU
   double densitySamplesPerPixel = 0.0;  // densities read for the whole picture / pixels
   double densitiesPreparing = 0.0;      // of these, all in all, read whatever the pixels and samples
   uint64_t gpuBytes = 0;                // bricks, index, light cache, picture, parameters

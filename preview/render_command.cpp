@@ -88,6 +88,7 @@ class Sequence {
 
   void frame(const std::string& in, const std::string& out) {
     const auto start = Clock::now();
+    const double apart = method_ ? apartOf(*method_) : 0.0;
     BrickVolume bricks = openVolume(in, options_.grid);
     addTemperature(bricks, scene_.emission);
     totals_.secondsLoad += secondsSince(start);
@@ -106,6 +107,7 @@ class Sequence {
     method_->setVolume(bricks);
     PictureCost cost;
     Picture picture = chooses() ? renderWithin(bricks, cost) : method_->render(*view_, request(), cost);
+    totals_.secondsToLastPixel += secondsSince(start) - (apartOf(*method_) - apart);
     if (cost.relativeError > 0.0 && !chooses())
       std::cerr << "noise: " << kPercent * cost.relativeError << "% relative RMSE\n";
     if (!exposureEv_) exposureEv_ = hasExtension(out, ".png") ? exposureFor(options_, picture) : 0.0;
@@ -157,6 +159,8 @@ class Sequence {
     if (scene_.stage.on && (scene_.stage.highlights || scene_.stage.penumbra > 0.0))
       std::cerr << "reference: leaves out the stage's highlights and penumbras, which have no truth\n";
   }
+  /// Seconds that are told apart from those of pictures.
+  static double apartOf(const Method& method) { return method.secondsDriver + method.secondsShaders; }
   bool isReference() const { return row_.name == kReferenceMethod; }
   bool chooses() const { return options_.error > 0.0 && !isReference(); }
 

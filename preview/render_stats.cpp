@@ -42,6 +42,8 @@ std::vector<std::string> unphysicalTerms(const LightModel& light) {
 void RenderTotals::add(const PictureCost& picture) {
   ++frames;
   cost.milliseconds += picture.milliseconds;
+  cost.millisecondsPreparing += picture.millisecondsPreparing;
+  cost.millisecondsUpload += picture.millisecondsUpload;
   cost.densitySamplesPerPixel += picture.densitySamplesPerPixel;
   cost.gpuBytes = std::max(cost.gpuBytes, picture.gpuBytes);
   cost.volumeBytes = std::max(cost.volumeBytes, picture.volumeBytes);
@@ -54,10 +56,14 @@ void RenderTotals::add(const PictureCost& picture) {
 
 void writeRenderStats(const std::string& path, const RenderTotals& totals, const Method& method,
                       const ViewedScene& view, double asked) {
-  const double frames = totals.frames;
+  const double frames = totals.frames, preparing = totals.cost.millisecondsPreparing;
   const LightModel light = lightModelOf(view.scene, view.medium);
   nlohmann::ordered_json stats{{"seconds_load", totals.secondsLoad / frames},
+                               {"seconds_to_last_pixel", totals.secondsToLastPixel / frames},
                                {"ms_per_frame", totals.cost.milliseconds / frames},
+                               {"ms_upload", totals.cost.millisecondsUpload / frames},
+                               {"ms_light_cache", (preparing - totals.cost.millisecondsUpload) / frames},
+                               {"ms_march", (totals.cost.milliseconds - preparing) / frames},
                                {"samples_per_pixel", totals.cost.densitySamplesPerPixel / frames},
                                {"gpu_bytes", totals.cost.gpuBytes},
                                {"gpu_volume_bytes", totals.cost.volumeBytes},

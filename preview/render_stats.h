@@ -26,6 +26,7 @@ struct ErrorReport {
 struct RenderTotals {
   int frames = 0;
   double secondsLoad = 0.0;
+  double secondsToLastPixel = 0.0;  // from the file's first byte on, without driver start and shaders
   PictureCost cost;
   std::optional<ErrorReport> error;
 

@@ -80,6 +80,7 @@ class MarchMethod : public Method {
     pass_->setParameters(parameters);
     pass_->setEnvironment(view.environmentMap);
     const double secondsUploading = secondsSince(start);
+    cost.millisecondsUpload = secondsUploading * 1e3;
     secondsShaders += pass_->compile(atlas);
     start = Clock::now();
     const Film film(width, height);
