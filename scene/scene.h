@@ -161,7 +161,7 @@ struct MarchSettings {
   bool adaptive = true;           // steps grow where the medium is thin; else all are stepVoxels
   bool lightCache = true;         // light from a coarse volume; else marched for at every point
   double cacheVoxels = 2.0;       // between samples of that volume, from 1 to 16; 16/n is reached
-  double skyCacheVoxels = 5.34;   // the same for what the sky scatters
+  double skyCacheVoxels = 4.0;    // the same for what the sky scatters
   double cacheNearVoxels = 8.0;   // marched towards a light before the volume is asked, from 0 to 16
   int cacheNearSteps = 4;         // in so many steps, from 0 to 16
   double cacheDepth = 0.2;        // optical depth of a voxel of mean density above which suns and points are

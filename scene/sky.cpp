@@ -63,4 +63,18 @@ glm::dvec3 skyRadiance(const Environment& environment, const EnvironmentMap* map
   return vectorOf(environment.constant);
 }
 
+glm::dvec3 meanSkyRadiance(const Environment& environment) {
+  NEPHELE_CHECK_EQ(environment.kind == Environment::Kind::exr, false);
+  if (environment.kind == Environment::Kind::constant) return vectorOf(environment.constant);
+  const SkyRamp& ramp = environment.ramp;
+  const RampShape shape = rampShape(ramp.cloudiness);
+  // Directions are even over the sine, and (1 - |sine|)^n is 1/(n + 1) on the mean.
+  const auto half = [&](const glm::dvec3& far, double power) {
+    return far + (vectorOf(ramp.horizon) - far) / (power + 1.0);
+  };
+  return 0.5 * ramp.intensity *
+         (half(vectorOf(ramp.zenith), shape.skyPower) +
+          half(shape.groundFactor * vectorOf(ramp.ground), shape.groundPower));
+}
+
 }  // namespace nephele

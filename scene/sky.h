@@ -32,4 +32,7 @@ RampShape rampShape(double cloudiness);
 glm::dvec3 skyRadiance(const Environment& environment, const EnvironmentMap* map, const glm::dvec3& up,
                        const glm::dvec3& direction);
 
+/// The mean of skyRadiance over all directions, of a constant environment or a ramp: in closed form.
+glm::dvec3 meanSkyRadiance(const Environment& environment);
+
 }  // namespace nephele

@@ -16,7 +16,7 @@ layout(binding = 0, r8) writeonly uniform image3D columns;
 #else
 layout(binding = 0, r16f) writeonly uniform image3D columns;
 #endif
-layout(binding = 1, rgba16f) writeonly uniform image3D skyImage;
+layout(binding = 1, rgb10_a2) writeonly uniform image3D skyImage;
 #endif
 layout(location = 0) uniform uint firstBlock;
 layout(location = 1) uniform int light;  // −1: the sky
@@ -58,7 +58,7 @@ void main() {
   if (light < 0) {
     vec4 sky0;
     vec4 sky1;
-    skyToCache(position, sky0, sky1, cost);
+    skyToCache(position, skyTurn(block, local, samples), sky0, sky1, cost);
     imageStore(skyImage, texel, sky0);
     imageStore(skyImage, texel + ivec3(0, 0, imageSize(skyImage).z / 2), sky1);
   } else {

@@ -139,9 +139,7 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   p.shadow.w = static_cast<float>(wider);
   constexpr double kBlock = kBlockBricks * kBrickCells;
   const double cell = std::min(wider * march.cacheVoxels, kBlock);
-  // The sky's samples are the farther apart already.
-  constexpr double kSkyFollows = 0.75;
-  const double skyCell = std::min(std::max(1.0, kSkyFollows * wider) * march.skyCacheVoxels, kBlock);
+  const double skyCell = std::min(wider * march.skyCacheVoxels, kBlock);
   const auto samples = [](double spacing) {
     return 1 + std::max(1, static_cast<int>(std::lround(kBlock / spacing)));
   };

@@ -34,7 +34,7 @@ TexelFormat columnFormat(bool floats, float kind) {
   return kind == shared::kColumnsInBytes ? TexelFormat{GL_R8, 1} : TexelFormat{GL_R16F, 2};
 }
 TexelFormat skyFormat(bool floats) {
-  return floats ? TexelFormat{GL_RGBA32F, 16} : TexelFormat{GL_RGBA16F, 8};
+  return floats ? TexelFormat{GL_RGBA32F, 16} : TexelFormat{GL_RGB10_A2, 4};
 }
 
 double secondsSince(Clock::time_point start) {

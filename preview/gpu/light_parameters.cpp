@@ -86,6 +86,14 @@ void setEnvironment(shared::MarchParameters& p, const ViewedScene& view) {
   p.skyForward = row(axes.forward, environment.show ? 1.0 : 0.0);
 }
 
+/// Octaves scatter the more of a sky that nothing hides.
+void setOpenSky(shared::MarchParameters& p, const Environment& environment, const LightModel& light) {
+  if (environment.kind == Environment::Kind::exr) return;  // never asked of the light cache
+  double orders = 0.0, scattering = 1.0;
+  for (int m = 0; m <= light.octaveCount; ++m, scattering *= light.b) orders += scattering;
+  p.skyOpen = row(orders * meanSkyRadiance(environment));
+}
+
 /// From the density's index space, relative to its brick grid's corner, to the temperatures', relative to
 /// theirs.
 void setHeatPlaces(shared::MarchParameters& p, const BrickVolume& bricks, const IndexFrame& frame,
@@ -143,6 +151,7 @@ void setLightParameters(shared::MarchParameters& p, const ViewedScene& view, con
   p.counts.y = light.octaveCount;
   setChord(p, bricks, frame, light.transmittance);
   setEnvironment(p, view);
+  setOpenSky(p, view.scene.environment, light);
   setEmission(p, view, bricks, frame);
 }
 

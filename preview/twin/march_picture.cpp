@@ -106,19 +106,20 @@ void fillCache(ArraySource& source, const March<ArraySource>& march) {
     const auto each = [&](int samples, const auto& fill) {
       for (int i = 0; i < samples * samples * samples; ++i) {
         const ivec3 local(i % samples, i / samples % samples, i / (samples * samples));
-        fill(place * samples + local, mine.cachePosition(block, local, samples));
+        fill(place * samples + local, mine.cachePosition(block, local, samples),
+             mine.skyTurn(block, local, samples));
       }
     };
     vec4 cost(0.0f);
     for (int light = 0; columns && light < p.counts.x; ++light)
-      each(p.cacheShape.x, [&](const ivec3& texel, const vec3& position) {
+      each(p.cacheShape.x, [&](const ivec3& texel, const vec3& position, const vec2&) {
         source.columns.at(texel + ivec3(0, 0, light * p.cacheShape.z)) =
             mine.columnToCache(light, position, cost);
       });
     if (!sky) return;
-    each(p.cacheShape.y, [&](const ivec3& texel, const vec3& position) {
+    each(p.cacheShape.y, [&](const ivec3& texel, const vec3& position, const vec2& turn) {
       vec4 parts[2];
-      mine.skyToCache(position, parts[0], parts[1], cost);
+      mine.skyToCache(position, turn, parts[0], parts[1], cost);
       for (int part = 0; part < 2; ++part)
         source.skies.at(texel + ivec3(0, 0, part * source.skies.size.z / 2)) = parts[part];
     });

@@ -24,11 +24,11 @@ namespace nephele::shared {
 // std140 puts every member on a multiple of 16 bytes; so must the C++ compiler, since the struct goes up by
 // memcpy.
 inline constexpr size_t kRowBytes = 16;
-inline constexpr size_t kRowsBeforeLights = 40;
+inline constexpr size_t kRowsBeforeLights = 41;
 inline constexpr size_t kRowsPerLight = 3;
 static_assert(sizeof(vec4) == kRowBytes && sizeof(ivec4) == kRowBytes);
 static_assert(sizeof(LightParameters) == kRowsPerLight * kRowBytes);
-static_assert(offsetof(MarchParameters, counts) == 38 * kRowBytes);
+static_assert(offsetof(MarchParameters, counts) == 39 * kRowBytes);
 static_assert(offsetof(MarchParameters, lights) == kRowsBeforeLights * kRowBytes);
 inline constexpr size_t kRowsBehindLights = 5 + kBlackbodyNodes + 7;
 static_assert(sizeof(MarchParameters) ==

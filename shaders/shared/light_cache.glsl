@@ -51,9 +51,23 @@ NPH_FN float lightColumn(int light, vec3 position, vec3 direction, float reach, 
   return column;
 }
 
+// Between samples light falls as e^(−depth): mixed as it is, places just inside a cloud would come out too bright. So the sky
+// is kept, as columns are, by the depth that would leave `share` of an open one; both parts lie between 0 and 1.
+NPH_CONST float kSkyMixedBy = 0.3f;
+NPH_CONST float kLeastSkyShare = 1e-9f;
+NPH_FN vec3 skyKept(vec3 share) {
+  return vec3(1.0f) / (vec3(1.0f) - kSkyMixedBy * log(clamp(share, vec3(kLeastSkyShare), vec3(1.0f))));
+}
+NPH_FN vec3 skyFromKept(vec3 kept) {
+  return vec3(params.skyOpen) * exp((vec3(1.0f) - vec3(1.0f) / max(kept, vec3(0.1f))) * (1.0f / kSkyMixedBy));
+}
+// Each coordinate is at most 3, where all light comes from one side and goes on.
+NPH_FN vec3 slopeKept(vec3 slope) { return slope * (1.0f / 6.0f) + vec3(0.5f); }
+NPH_FN vec3 slopeFromKept(vec3 kept) { return (kept - vec3(0.5f)) * 6.0f; }
+
 // What the sky scatters towards `ray`, per unit density and before σ_s. The two bands that are kept may fall below 0 where
 // light comes from one side alone.
 NPH_FN vec3 skyScattering(vec3 position, vec3 ray) {
   vec3 texel = max(cacheTexel(position, params.cacheShape.y), vec3(0.0f));
-  return vec3(cachedSky(0, texel)) * max(0.0f, 1.0f + dot(vec3(cachedSky(1, texel)), ray));
+  return skyFromKept(vec3(cachedSky(0, texel))) * max(0.0f, 1.0f + dot(slopeFromKept(vec3(cachedSky(1, texel))), ray));
 }

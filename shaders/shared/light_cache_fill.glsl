@@ -1,6 +1,6 @@
 // What the samples of the light cache hold. Included as walk.glsl is, after light.glsl.
 
-NPH_CONST int kSkyDirections = 12;
+NPH_CONST int kSkyDirections = 6;
 
 // Index-space position of sample `local` of a block.
 NPH_FN vec3 cachePosition(ivec3 block, ivec3 local, int samples) {
@@ -21,23 +21,33 @@ NPH_FN float columnToCache(int light, vec3 position, NPH_INOUT(vec4) cost) {
   return 1.0f / (1.0f + params.cache.y * column);
 }
 
-// Directions evenly over the sphere: a Fibonacci spiral.
-NPH_FN vec3 skyDirection(int i) {
-  float z = 1.0f - (2.0f * float(i) + 1.0f) / float(kSkyDirections);
+// Neighbouring samples look in different directions, so that what is mixed of eight of them knows of eight times as many: how
+// far sample `local` of a block turns the spiral, x: along its axis, in shares of a direction. y: about it.
+NPH_FN vec2 skyTurn(ivec3 block, ivec3 local, int samples) {
+  ivec3 place = block * (samples - 1) + local;
+  int odd = (place.x & 1) + 2 * (place.y & 1) + 4 * (place.z & 1);
+  float around = 0.6180339888f * float(odd);
+  return vec2((float(odd) + 0.5f) / 8.0f, 6.28318531f * (around - floor(around)));
+}
+
+// Directions evenly over the sphere: a Fibonacci spiral, turned.
+NPH_FN vec3 skyDirection(int i, vec2 turn) {
+  float z = 1.0f - 2.0f * (float(i) + turn.x) / float(kSkyDirections);
   float r = sqrt(max(0.0f, 1.0f - z * z));
-  float angle = 2.39996323f * float(i);  // π (3 − √5)
+  float angle = 2.39996323f * float(i) + turn.y;  // π (3 − √5)
   return vec3(r * cos(angle), r * sin(angle), z);
 }
 
 // What the sky scatters at a position towards a ray, per unit density and before σ_s, to first order in the ray's direction
-// (the phase function's and the sky's first two bands of spherical harmonics): sky0.rgb + dot(sky1.xyz, ray) · sky0.rgb.
-NPH_FN void skyToCache(vec3 position, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NPH_INOUT(vec4) cost) {
+// (the phase function's and the sky's first two bands of spherical harmonics), as the cache keeps it: see skyScattering.
+NPH_FN void skyToCache(vec3 position, vec2 turn, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NPH_INOUT(vec4) cost) {
   float enough = columnThatHides(1e-3f);  // of a sky that comes from all sides, less is not seen
   vec2 steps = stepsFrom(position, vec2(params.cacheSteps.z, params.cacheSteps.w));
   vec3 even = vec3(0.0f);
+  vec3 open = vec3(0.0f);  // the same where nothing hides the sky
   vec3 slope = vec3(0.0f);
   for (int i = 0; i < kSkyDirections; ++i) {
-    vec3 toSky = skyDirection(i);
+    vec3 toSky = skyDirection(i, turn);
     vec3 toSkyIndex = toSky.x * vec3(params.indexFromWorldX) + toSky.y * vec3(params.indexFromWorldY) +
                       toSky.z * vec3(params.indexFromWorldZ);
     float column = columnDensity(position, toSkyIndex, 3.0e38f, enough, steps, 0.5f, cost);
@@ -48,12 +58,14 @@ NPH_FN void skyToCache(vec3 position, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NP
     for (int m = 0; m <= params.counts.y; ++m) {
       vec3 light = scattering * radiance * lessened((extinction * column) * vec3(params.sigmaT));
       even += light;
+      open += scattering * radiance;
       slope += (3.0f * g * dot(light, vec3(1.0f / 3.0f))) * toSky;
       extinction *= params.octaves.x;
       scattering *= params.octaves.y;
       g *= params.octaves.z;
     }
   }
-  sky0 = vec4(even, 0.0f);
-  sky1 = vec4(slope / max(dot(even, vec3(1.0f / 3.0f)), 1e-30f), 0.0f);
+  // Shares of the same few directions err the less, and not at all where nothing hides the sky.
+  sky0 = vec4(skyKept(even / max(open, vec3(1e-30f))), 0.0f);
+  sky1 = vec4(slopeKept(slope / max(dot(even, vec3(1.0f / 3.0f)), 1e-30f)), 0.0f);
 }

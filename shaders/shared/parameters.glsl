@@ -59,6 +59,7 @@ struct MarchParameters {
   vec4 skyRight;     // axes of a map
   vec4 skyForward;   // w: 1 where the picture holds the environment behind the medium, else 0
   ivec4 skySize;     // x, y: texels of a map
+  vec4 skyOpen;      // what a place that nothing shades scatters of the sky, mean over directions, per unit density, before σ_s
   vec4 walk;         // x: way into the next brick, voxels, that rounding may take. y: no sample exceeds it. z, w: optical
                      // depth of a step, of its variation over the brick, below which steps grow; z = 0: fixed steps
   vec4 cache;        // x: kColumns… where columns come from the light cache, else 0. y: what one stands for there, density · world units.

@@ -118,6 +118,21 @@ TEST(SharedSky, RampsEnergyHasItsClosedForm) {
   }
 }
 
+TEST(SharedSky, TheMeanOfARampIsThatOfItsDirections) {
+  for (double cloudiness : {0.0, 0.4, 1.0}) {
+    const ViewedScene view = rampView(cloudiness, {0, 0, 1});
+    glm::dvec3 sum(0.0);
+    constexpr int kNodes = 40000;
+    for (int i = 0; i < kNodes; ++i) {
+      const double z = 2.0 * (i + 0.5) / kNodes - 1.0;
+      sum +=
+          skyRadiance(view.scene.environment, nullptr, view.up, glm::dvec3(std::sqrt(1.0 - z * z), 0.0, z));
+    }
+    const glm::dvec3 mean = meanSkyRadiance(view.scene.environment);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], sum[c] / kNodes, 1e-4) << cloudiness;
+  }
+}
+
 TEST(SharedSky, DirectionsDrawnFromAMapHaveTheDensityItSays) {
   const ViewedScene view = mapView(40, 20, 0.8);
   March<NoBricks> march = marchOver(view);
