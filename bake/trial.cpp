@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <glm/common.hpp>
 #include <set>
 
 #include "bake/particle_run.h"
@@ -17,6 +18,9 @@ namespace {
 constexpr double kNoneFaded = 1e-6;
 // Voxels along the sides of the bake that finds where the density is.
 constexpr double kSeenAlongLongest = 128.0, kSeenAlongShortest = 16.0;
+// Blocks that may hold something in the box of that bake, sixteen times a cube's: their grid takes 128 MiB,
+// however thin the box is.
+constexpr double kMostBlocksToSee = 65536.0;
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -35,6 +39,19 @@ TrialBaker::Extent extentOf(const Box& box) {
   const double longest = std::max({size.x, size.y, size.z}), shortest = std::min({size.x, size.y, size.z});
   if (box.empty() || !std::isfinite(longest)) return {};
   return {longest, shortest};
+}
+
+/// Voxels for that bake of what lies in `box`, part of an extent.
+double sizeToSee(const Box& box, const TrialBaker::Extent& extent) {
+  double size = extent.longest / kSeenAlongLongest;
+  if (extent.shortest > 0.0) size = std::min(size, extent.shortest / kSeenAlongShortest);
+  const auto blocks = [&] {
+    const double edge = size * kBlockEdge;
+    const glm::dvec3 along = glm::floor(box.high / edge) - glm::floor(box.low / edge) + 1.0;
+    return along.x * along.y * along.z;
+  };
+  while (size < extent.longest && blocks() > kMostBlocksToSee) size *= 2.0;
+  return size;
 }
 
 }  // namespace
@@ -113,12 +130,12 @@ Chords TrialBaker::chords(size_t frame, uint64_t count, uint64_t seed) const {
     box = state_->runs[frame]->extent();
   } else {
     Asset coarse = state_->asset;
-    const Extent extent = this->extent();
-    coarse.voxelSize = std::min(extent.longest / kSeenAlongLongest, extent.shortest / kSeenAlongShortest);
+    const Box support = state_->supportOf(frame);
+    coarse.voxelSize = sizeToSee(support, extent());
     coarse.precision = Precision::single;
     const BrickVolume seen = bake(frame, coarse).bricks;
     box = {glm::dvec3(seen.activeMin - 1) * coarse.voxelSize, glm::dvec3(seen.activeMax) * coarse.voxelSize};
-    if (seen.empty()) box = state_->supportOf(frame);  // thinner than can be seen
+    if (seen.empty()) box = support;  // thinner than can be seen
   }
   return randomChords(box.low, box.high, count, seed);
 }

@@ -10,6 +10,7 @@
 
 #include "bake/cost_chart.h"
 #include "bake/run.h"
+#include "bake/trial.h"
 #include "tests/scratch_folder.h"
 #include "volume/vdb_header.h"
 
@@ -128,6 +129,19 @@ TEST_F(ChoiceTest, NoiseFinerThanAUnitEndsWhereItsBoxDoes) {
   const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
   EXPECT_LT(choice.asset.voxelSize, 0.4);
   EXPECT_LE(choice.measured, kChoiceShare * choice.asked);
+}
+
+TEST_F(ChoiceTest, RaysGoThroughASheetThatIsTooThinToBeSeen) {
+  // 16 voxels across it would be more than 10^12; no voxel of those that are baked lies in the second.
+  for (const char* centre : {"0, 0, 0", "0, 0, 0.7"}) {
+    const Pipeline pipeline =
+        recipe(std::string("box: { size: [2000, 2000, 0.1], rounding: 0, center: [") + centre + "] }",
+               "tolerance: 10%");
+    const Chords chords =
+        TrialBaker(pipeline, pipeline.assets[0], {std::nullopt}, folder()).chords(0, 100, kOtherRays);
+    EXPECT_EQ(chords.lines.size(), 100u);
+    EXPECT_NEAR(chords.radius, 1000.0 * std::sqrt(2.0), 10.0) << centre;
+  }
 }
 
 TEST_F(ChoiceTest, RefusesWhatNeverEnds) {
