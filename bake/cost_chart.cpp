@@ -129,11 +129,10 @@ class CostSweep {
     }
     std::filesystem::remove(file_);
     const GridDifference d = difference(reference_, bake.bricks, kRays);
-    const double maximum = d.maximumA > 0.0 ? d.maximumA : 1.0,
+    const double maximum = d.maximumA > 0.0 ? d.maximumA : 1.0, mean = d.meanA > 0.0 ? d.meanA : 1.0,
                  depth = d.largestDepthA > 0.0 ? d.largestDepthA : 1.0;
     chart_.points.push_back({sweep, look, bake.seconds, bake.fileBytes, bake.gridBytes, bake.voxelsActive,
-                             d.largest / maximum, d.relativeRms(), d.largestDepth / depth,
-                             d.rmsDepth / depth});
+                             d.largest / maximum, d.rms / mean, d.largestDepth / depth, d.rmsDepth / depth});
   }
 
   const Asset& asset_;

@@ -1,5 +1,6 @@
 // nephele_brick_sizes FILE.vdb...: what bricks of 4, 8 and 16 cells would take and skip, one line a file and
 // size. Counts, no clock. Depends on volume's brick headers.
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <glm/common.hpp>

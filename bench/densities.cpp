@@ -4,6 +4,7 @@
 // reads them, and without those that lie in empty bricks. Depends on preview.
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <string>
 
 #include "base/error.h"

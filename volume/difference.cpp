@@ -103,7 +103,7 @@ double relative(double difference, double to) {
 }  // namespace
 
 double GridDifference::relativeDensity() const { return relative(largest, maximumA); }
-double GridDifference::relativeRms() const { return relative(rms, meanA); }
+double GridDifference::relativeRmse() const { return relative(rms, meanA); }
 double GridDifference::relativeDepth() const { return relative(largestDepth, largestDepthA); }
 double GridDifference::relativeVelocity() const { return relative(largestVelocity, largestSpeedA); }
 
@@ -178,7 +178,7 @@ std::string differenceAsJson(const GridDifference& d, const std::string& pathA, 
        {{"largest", d.largest},
         {"relative", d.relativeDensity()},
         {"rms", d.rms},
-        {"relative_rms", d.relativeRms()},
+        {"relative_rmse", d.relativeRmse()},
         {"maximum_a", d.maximumA}}},
       {"optical_depth",
        {{"rays", d.rays},

@@ -33,9 +33,10 @@ struct GridDifference {
   /// The figures that --tolerance judges: over A's maximum, A's largest depth, A's largest speed. 0 where
   /// both are 0, infinite where A is empty and B is not.
   double relativeDensity() const;
-  double relativeRms() const;  // rms over meanA
   double relativeDepth() const;
   double relativeVelocity() const;
+  /// Told, not judged: rms over meanA, 0 or infinite as those are.
+  double relativeRmse() const;
 };
 
 /// Along `rays` random chords of the common box (uniform ends on its bounding sphere); each seed has its own.

@@ -1,4 +1,4 @@
-"""The command-line cases of both programs, one a line: command, exit code, what stderr must hold, and the edit of a
+"""The command-line cases of the programs, one a line: command, exit code, what stderr must hold, and the edit of a
 good recipe that makes the input wrong. Run by cases.py. Depends on nothing.
 """
 from dataclasses import dataclass, field
@@ -267,4 +267,8 @@ PREVIEW = [
     says("preview", 2),
 ]
 
-TABLES = {"bake": BAKE, "preview": PREVIEW}
+TOLERANCES = [
+    says("tolerances . --only no_such_sample", 2, "no recipe 'no_such_sample' in .", recipe=GOOD_RECIPE),
+]
+
+TABLES = {"bake": BAKE, "preview": PREVIEW, "tolerances": TOLERANCES}

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs one table of case_table.py: each case is a command line, its exit code and what it must say.
 
-usage: cases.py bake|preview
+usage: cases.py bake|preview|tolerances
 Also holds every case that fails to leaving no file behind. Depends on programs.py, damaged.py, case_table.py.
 """
 import shlex
@@ -13,7 +13,7 @@ import case_table
 import damaged
 import programs
 
-PROGRAMS = {"bake": programs.BAKE, "preview": programs.PREVIEW}
+PROGRAMS = {"bake": programs.BAKE, "preview": programs.PREVIEW, "tolerances": programs.TOLERANCES}
 
 
 def files_in(folder):

@@ -1,7 +1,7 @@
 """Runs the project's programs for the command tests: with a time limit, a memory limit and in a folder of its own.
 
-Where the programs lie comes from ctest: NEPHELE_BAKE, NEPHELE_PREVIEW (paths), NEPHELE_SANITIZED (0 or 1).
-Depends on Python's standard library alone.
+Where the programs lie comes from ctest: NEPHELE_BAKE, NEPHELE_PREVIEW, NEPHELE_TOLERANCES (paths), NEPHELE_SANITIZED
+(0 or 1). Depends on Python's standard library alone.
 """
 import json
 import os
@@ -16,6 +16,7 @@ SKIPPED = 77  # the exit code that ctest counts as "left out"
 
 BAKE = os.environ.get("NEPHELE_BAKE", "build/nephele-bake")
 PREVIEW = os.environ.get("NEPHELE_PREVIEW", "build/nephele-preview")
+TOLERANCES = os.environ.get("NEPHELE_TOLERANCES", "build/bench/nephele_tolerances")
 SANITIZED = os.environ.get("NEPHELE_SANITIZED", "0") == "1"
 
 # A bake that takes a blink: a ball of about 4000 voxels.

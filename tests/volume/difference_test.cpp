@@ -29,7 +29,7 @@ TEST(Difference, OfADoubledGridIsTheGrid) {
   EXPECT_DOUBLE_EQ(d.largest, 0.5);
   EXPECT_DOUBLE_EQ(d.rms, 0.5);
   EXPECT_DOUBLE_EQ(d.meanA, 0.5);
-  EXPECT_DOUBLE_EQ(d.relativeRms(), 1.0);
+  EXPECT_DOUBLE_EQ(d.relativeRmse(), 1.0);
   EXPECT_DOUBLE_EQ(d.relativeDensity(), 1.0);
   EXPECT_NEAR(d.relativeDepth(), 1.0, 1e-12);
 }
