@@ -20,8 +20,8 @@ struct FitCommandOptions {
 };
 
 /// Fits, prints the factors and errors before and after, and writes octaves_a, octaves_b and octaves_c,
-/// each for three heights of the sun, into the metadata of each file. Throws InputError or WorldError.
-/// Returns the exit code 0.
+/// each for three heights of the sun, and octaves_count into the metadata of each file. Throws InputError or
+/// WorldError. Returns the exit code: kExitNo where views held back get worse, else 0.
 int fitCommand(const FitCommandOptions& options);
 
 }  // namespace nephele

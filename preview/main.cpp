@@ -184,8 +184,9 @@ int run(int argc, char** argv) {
   compare->add_flag("--json", a.json, "Print JSON");
   CLI::App* chart = app.add_subcommand("chart", "Chart methods against truth: CSV, SVG, PNG and a page");
   addChartOptions(*chart, a);
-  CLI::App* fit = app.add_subcommand(
-      "fit", "Fit the octaves' factors to the reference, and store them in the file's metadata");
+  CLI::App* fit = app.add_subcommand("fit",
+                                     "Fit the octaves' factors to the reference for three heights of the "
+                                     "sun, and store them in the file's metadata");
   addFitOptions(*fit, a);
   try {
     app.parse(argc, argv);

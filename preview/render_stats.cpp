@@ -61,9 +61,6 @@ void writeRenderStats(const std::string& path, const RenderTotals& totals, const
   nlohmann::ordered_json stats{{"seconds_load", totals.secondsLoad / frames},
                                {"seconds_to_last_pixel", totals.secondsToLastPixel / frames},
                                {"ms_per_frame", totals.cost.milliseconds / frames},
-                               {"ms_upload", totals.cost.millisecondsUpload / frames},
-                               {"ms_light_cache", (preparing - totals.cost.millisecondsUpload) / frames},
-                               {"ms_march", (totals.cost.milliseconds - preparing) / frames},
                                {"samples_per_pixel", totals.cost.densitySamplesPerPixel / frames},
                                {"gpu_bytes", totals.cost.gpuBytes},
                                {"gpu_volume_bytes", totals.cost.volumeBytes},
@@ -78,6 +75,11 @@ void writeRenderStats(const std::string& path, const RenderTotals& totals, const
                                {"look", nameOf(light.look)},
                                {"not_physical", unphysicalTerms(light)},
                                {"white_furnace", furnaceValue(light.octaveCount, light.a, light.b)}};
+  if (totals.cost.volumeBytes > 0) {  // the reference uploads nothing and keeps no light
+    stats["ms_upload"] = totals.cost.millisecondsUpload / frames;
+    stats["ms_light_cache"] = (preparing - totals.cost.millisecondsUpload) / frames;
+    stats["ms_march"] = (totals.cost.milliseconds - preparing) / frames;
+  }
   if (totals.error) stats["error"] = jsonOf(*totals.error, asked);
   const std::string text = stats.dump(2) + "\n";
   writeText(path, text);

@@ -229,8 +229,14 @@ ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double a
   const double elevation = sunElevation(view.scene, view.up);
   if (scatters && takeFittedFactors(view.scene.octaves, bricks, elevation)) {
     std::ostringstream fitted;
-    fitted << "\noctaves: as fitted to the file for a sun at " << std::round(elevation) << " degrees: a "
-           << view.scene.octaves.a << ", b " << view.scene.octaves.b << ", c " << view.scene.octaves.c;
+    const double used = std::clamp(elevation, kFittedElevations.front(), kFittedElevations.back());
+    const bool hasSun = std::any_of(view.scene.lights.begin(), view.scene.lights.end(),
+                                    [](const Light& l) { return std::holds_alternative<Sun>(l); });
+    fitted << "\noctaves: as fitted to the file for a sun at " << std::round(used) << " degrees";
+    if (!hasSun) fitted << " (the scene has none)";
+    if (used != elevation) fitted << " (the scene's is at " << std::round(elevation) << ')';
+    fitted << ": a " << view.scene.octaves.a << ", b " << view.scene.octaves.b << ", c "
+           << view.scene.octaves.c;
     const std::optional<int> count = fittedCount(bricks);
     if (count && count != view.scene.octaves.count)
       fitted << " (fitted for " << *count << " orders beyond the first, the scene asks for "

@@ -73,11 +73,9 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-/// Nothing where a file's fitted factors may stand in for them.
+/// Nothing where a file's fitted factors may stand in for them: those follow the sun.
 std::string factorsOf(const Octaves& octaves) {
-  const Octaves defaults;
-  if (!octaves.factorsGiven && octaves.a == defaults.a && octaves.b == defaults.b && octaves.c == defaults.c)
-    return {};
+  if (!octaves.factorsGiven) return {};
   return ", a: " + shortest(octaves.a) + ", b: " + shortest(octaves.b) + ", c: " + shortest(octaves.c);
 }
 

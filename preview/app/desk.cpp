@@ -132,8 +132,10 @@ void Desk::restart() {
 
 void Desk::followSun() {
   Scene& scene = state_.settings.scene;
-  if (lightModelOf(scene, state_.settings.medium).octaveCount > 0)
-    takeFittedFactors(scene.octaves, document_.volume(), sunElevation(scene, state_.up));
+  if (lightModelOf(scene, state_.settings.medium).octaveCount == 0) return;
+  const std::optional<int> count = scene.octaves.count;  // adopt() alone takes the file's
+  takeFittedFactors(scene.octaves, document_.volume(), sunElevation(scene, state_.up));
+  scene.octaves.count = count;
 }
 
 std::array<Shown, kSideCount> Desk::shown() const {

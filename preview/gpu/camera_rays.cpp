@@ -138,7 +138,14 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   const double wider = std::exp2(std::floor(std::log2(counted) + kRounding));
   p.shadow.w = static_cast<float>(wider);
   constexpr double kBlock = kBlockBricks * kBrickCells;
-  const double cell = std::min(wider * march.cacheVoxels, kBlock);
+  const float sigmaMax = std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z));
+  const double depth = voxelDepth(bricks, frame, double{sigmaMax});
+  // Optical depth of a cell over which light hardly falls: samples may lie that far apart, and the way to
+  // them need not be marched.
+  constexpr double kThinCell = 0.05;
+  const double thin = kThinCell / std::max(depth, kThinCell / kBlock);
+  const bool isThin = thin >= wider * march.cacheVoxels;
+  const double cell = std::min(std::max(thin, wider * march.cacheVoxels), kBlock);
   const double skyCell = std::min(wider * march.skyCacheVoxels, kBlock);
   const auto samples = [](double spacing) {
     return 1 + std::max(1, static_cast<int>(std::lround(kBlock / spacing)));
@@ -147,11 +154,11 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   // just inside a cloud come out too dark, with a large one too bright; in between they are right on the
   // mean.
   constexpr float kMixedBy = 0.5f;
-  const float sigmaMax = std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z));
-  const bool good = wider * voxelDepth(bricks, frame, double{sigmaMax}) <= march.cacheDepth;
+  const bool good = wider * depth <= march.cacheDepth;
   if (good || march.alwaysCached)
     p.cache = vec4(good ? shared::kColumnsInHalves : shared::kColumnsInBytes, kMixedBy * sigmaMax,
-                   static_cast<float>(march.cacheNearVoxels), static_cast<float>(march.cacheNearSteps));
+                   static_cast<float>(march.cacheNearVoxels),
+                   isThin ? 0.0f : static_cast<float>(march.cacheNearSteps));
   constexpr float kGrowth = 1.2f, kSkyGrowth = 1.5f;
   p.cacheSteps = vec4(static_cast<float>(0.5 * cell), kGrowth, static_cast<float>(0.5 * skyCell), kSkyGrowth);
   // A picture's small suns fall between the few directions that are kept.
