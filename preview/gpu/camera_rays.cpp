@@ -143,9 +143,9 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   // Optical depth of a cell over which light hardly falls: samples may lie that far apart, and the way to
   // them need not be marched.
   constexpr double kThinCell = 0.05;
-  const double thin = kThinCell / std::max(depth, kThinCell / kBlock);
-  const bool isThin = thin >= wider * march.cacheVoxels;
-  const double cell = std::min(std::max(thin, wider * march.cacheVoxels), kBlock);
+  const double least = std::min(wider * march.cacheVoxels, kBlock);
+  const bool isThin = depth > 0.0 && depth * least <= kThinCell;  // 0: the mean density is not known
+  const double cell = isThin ? std::min(kThinCell / depth, kBlock) : least;
   const double skyCell = std::min(wider * march.skyCacheVoxels, kBlock);
   const auto samples = [](double spacing) {
     return 1 + std::max(1, static_cast<int>(std::lround(kBlock / spacing)));

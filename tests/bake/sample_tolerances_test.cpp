@@ -28,8 +28,8 @@ TEST_P(SampleTolerance, HoldsOnFreshRays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, SampleTolerance,
-                         ::testing::Combine(::testing::Values("cirrostratus", "report_sphere",
-                                                              "cube_perlin", "breath"),
+                         ::testing::Combine(::testing::Values("cirrostratus", "report_sphere", "cube_perlin",
+                                                              "breath"),
                                             ::testing::Values(0.10, 0.03)));
 
 }  // namespace

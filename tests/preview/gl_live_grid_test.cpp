@@ -205,6 +205,8 @@ TEST(GlLive, TheMarchReadsWhatWasResolved) {
   BrickVolume read = bricksFromDense(dense, kBox.size, kBox.low, live.volume.worldFromIndex);
   read.activeMin = live.volume.activeMin;
   read.activeMax = live.volume.activeMax;
+  read.meanActive =
+      live.volume.meanActive;  // of the file that is played live: how the light cache is laid out
   ViewedScene view;
   view.camera = frameCamera(read, {0.0, 0.0, 1.0}, 0.6, 1.5);
   view.medium.sigmaS = {0.2, 0.3, 0.4};
