@@ -142,7 +142,7 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   const double depth = voxelDepth(bricks, frame, double{sigmaMax});
   // Optical depth of a cell over which light hardly falls: samples may lie that far apart, and the way to
   // them need not be marched.
-  constexpr double kThinCell = 0.05;
+  constexpr double kThinCell = 0.06;
   const double least = std::min(wider * march.cacheVoxels, kBlock);
   const bool isThin = depth > 0.0 && depth * least <= kThinCell;  // 0: the mean density is not known
   const double cell = isThin ? std::min(kThinCell / depth, kBlock) : least;
