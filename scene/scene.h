@@ -153,7 +153,7 @@ inline constexpr AtlasPrecision kAtlasPrecisions[] = {AtlasPrecision::automatic,
                                                       AtlasPrecision::r16f, AtlasPrecision::r32f};
 
 /// Steps and the light cache's spacings in voxels of the level being read; those of the view and of the cache
-/// in what covers stepPixels pixels, where that is longer.
+/// in what covers stepPixels pixels, where that is longer, and the cache's farther where voxels are thin.
 struct MarchSettings {
   double stepVoxels = 0.5;
   double shadowStepVoxels = 1.0;  // the first step towards a light

@@ -3,7 +3,7 @@
 // after it; GLSL's scope or the struct provides
 //   uint blockWord(ivec3 block);               0: not kept. Else 1 + its place in the cache: 10 bits an axis
 //   float cachedColumn(vec3 texel);            trilinear; whole numbers are samples; 1/(1 + params.cache.y · column)
-//   vec4 cachedSky(int part, vec3 texel);      the same; 0: radiance scattered alike to all sides. 1: its forward slope
+//   vec4 cachedSky(int part, vec3 texel);      the same; 0: light scattered alike to all sides, see skyKept. 1: its slope
 
 NPH_CONST float kBlockEdge = 16.0f;
 
