@@ -199,32 +199,42 @@ bool LightCache::plan(const BrickAtlas& atlas, const MarchParameters& parameters
   return anew;
 }
 
+std::vector<LightCache::Task>::iterator LightCache::nextTask(const MarchParameters& parameters) {
+  return std::find_if(tasks_.begin(), tasks_.end(),
+                      [&](const Task& task) { return task.light == kSky || parameters.cache.x > 0.0f; });
+}
+
 void LightCache::begin(const BrickAtlas& atlas, const MarchParameters& parameters) {
   bare_ = plan(atlas, parameters) || bare_;
-  if (tasks_.empty()) return;
-  fill(atlas, tasks_.front(), 1);
+  const auto task = nextTask(parameters);
+  if (task == tasks_.end()) return;
+  fill(atlas, *task, 1);
   finishGl("compiling the light cache");
-  if (tasks_.front().left == 0) tasks_.erase(tasks_.begin());
+  if (task->left == 0) tasks_.erase(task);
 }
 
 bool LightCache::update(const BrickAtlas& atlas, const MarchParameters& parameters, double seconds) {
   bare_ = plan(atlas, parameters) || bare_;
   if (bare_) seconds = std::numeric_limits<double>::infinity();  // nothing could be shown meanwhile
   const auto start = Clock::now();
-  while (!tasks_.empty()) {
-    Task& task = tasks_.front();
-    const uint32_t left = std::min(task.left, blockTotal_ - task.nextBlock);
+  auto task = nextTask(parameters);
+  while (task != tasks_.end()) {
+    const uint32_t left = std::min(task->left, blockTotal_ - task->nextBlock);
     const auto pieceStart = Clock::now();
     const double wanted = std::min(kPieceSeconds, seconds) * blocksPerSecond_;
     const uint32_t blocks = std::min(left, std::max(kFirstPieceBlocks, static_cast<uint32_t>(wanted)));
-    fill(atlas, task, blocks);
+    fill(atlas, *task, blocks);
     finishGl("filling the light cache");
     blocksPerSecond_ = blocks / std::max(secondsSince(pieceStart), 1e-6);  // 1e-6 s: a clock may stand still
-    if (task.left == 0) tasks_.erase(tasks_.begin());
+    if (task->left == 0) {
+      tasks_.erase(task);
+      task = nextTask(parameters);
+    }
     if (secondsSince(start) >= seconds) break;
   }
-  bare_ = bare_ && !tasks_.empty();
-  return tasks_.empty();
+  const bool right = task == tasks_.end();
+  bare_ = bare_ && !right;
+  return right;
 }
 
 void LightCache::bind() const {

@@ -62,6 +62,9 @@ class LightCache {
   shared::MarchParameters knownAfter(const shared::MarchParameters& parameters) const;
   void findTasks(const shared::MarchParameters& parameters, bool otherContents);
   void fill(const BrickAtlas& atlas, Task& task, uint32_t blocks);
+  /// The first of what these parameters ask for. Columns that a moving picture left wait while resting ones
+  /// ask for none: these know no κ to fill them by.
+  std::vector<Task>::iterator nextTask(const shared::MarchParameters& parameters);
 
   const GlProgram& programFor(const shared::MarchParameters& parameters);
 
