@@ -1,8 +1,10 @@
 // Figures, warnings and marks over the picture. Depends on imgui.
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <vector>
 
 #include "preview/app/panel_parts.h"
 #include "preview/app/widgets.h"
@@ -12,9 +14,9 @@ namespace {
 
 constexpr float kMargin = 8.0f;
 constexpr float kGround = 0.75f;  // opacity that white text needs over white pictures
-constexpr ImGuiWindowFlags kOverlay =
-    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
-    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_AlwaysAutoResize;
+constexpr ImGuiWindowFlags kOverlay = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
+                                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav |
+                                      ImGuiWindowFlags_NoBringToFrontOnFocus;
 
 std::string figures(const UiFacts& facts) {
   constexpr double kMebibyte = 1048576.0, kPercent = 100.0;
@@ -50,7 +52,7 @@ void scaleBar(View view, double top) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x - kMargin, 0.5f * screen.y}, ImGuiCond_Always, {1.0f, 0.5f});
   ImGui::SetNextWindowBgAlpha(kGround);
-  if (ImGui::Begin("Scale", nullptr, kOverlay)) {
+  if (ImGui::Begin("Scale", nullptr, kOverlay | ImGuiWindowFlags_AlwaysAutoResize)) {
     ImGui::TextUnformatted(rowOf(view).name.data());
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float step = kWidth / static_cast<float>(kStops.size() - 1);
@@ -61,7 +63,8 @@ void scaleBar(View view, double top) {
                                                           from);
     }
     ImGui::Dummy({kWidth, kHeight});
-    ImGui::Text("0 ... %.3g %s", top, rowOf(view).unit.data());
+    constexpr double kLarge = 1000.0;  // from here on three digits would want a power of ten
+    ImGui::Text(top < kLarge ? "0 ... %.3g %s" : "0 ... %.0f %s", top, rowOf(view).unit.data());
   }
   ImGui::End();
 }
@@ -71,14 +74,30 @@ void scaleBar(View view, double top) {
 void headUpLine(const UiState& state, const UiFacts& facts) {
   constexpr float kWidest = 35.0f;  // in heights of the font
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  // As wide as the widest line needs, within half of the screen. Measured beforehand: a window that follows
+  // its contents does so a frame later, and at rest no frame may come.
+  const float wrap = std::min(widgets::ems(kWidest), 0.5f * screen.x);
+  std::vector<std::string> lines{figures(facts)};
+  lines.insert(lines.end(), facts.warnings.begin(), facts.warnings.end());
+  if (!state.notice.empty()) lines.push_back(state.notice);
+  const ImGuiStyle& style = ImGui::GetStyle();
+  ImVec2 size(0.0f, -style.ItemSpacing.y);
+  for (const std::string& line : lines) {
+    const ImVec2 text = ImGui::CalcTextSize(line.c_str(), nullptr, false, wrap);
+    size = {std::max(size.x, text.x), size.y + text.y + style.ItemSpacing.y};
+  }
+  ImGui::SetNextWindowSize({size.x + 2.0f * style.WindowPadding.x, size.y + 2.0f * style.WindowPadding.y});
   ImGui::SetNextWindowPos({screen.x - kMargin, kMargin}, ImGuiCond_Always, {1.0f, 0.0f});
   ImGui::SetNextWindowBgAlpha(kGround);
   if (ImGui::Begin("Figures", nullptr, kOverlay)) {
-    // As wide as the widest line needs, within half of the screen.
-    ImGui::PushTextWrapPos(std::min(widgets::ems(kWidest), 0.5f * screen.x));
-    ImGui::TextUnformatted(figures(facts).c_str());
-    for (const std::string& warning : facts.warnings) widgets::warning(warning);
-    if (!state.notice.empty()) ImGui::TextWrapped("%s", state.notice.c_str());
+    ImGui::PushTextWrapPos(style.WindowPadding.x + wrap);
+    for (size_t i = 0; i < lines.size(); ++i) {
+      const bool isWarning = i > 0 && i <= facts.warnings.size();
+      if (isWarning)
+        widgets::warning(lines[i]);
+      else
+        ImGui::TextWrapped("%s", lines[i].c_str());
+    }
     ImGui::PopTextWrapPos();
   }
   ImGui::End();

@@ -38,8 +38,9 @@ void setStyle() {
 
 /// Narrow and no higher than the window, so that the cloud has room.
 void mainPanel(UiState& state, const UiFacts& facts, UiWishes& wishes) {
-  constexpr float kNarrowest = 18.0f, kWidest = 23.0f;  // in heights of the font
-  constexpr float kShare = 0.25f, kLabelShare = 0.40f;
+  constexpr float kNarrowest = 20.0f, kWidest = 23.0f;  // in heights of the font
+  constexpr float kLabels = 8.5f;                       // likewise: what the longest label takes
+  constexpr float kShare = 0.25f;
   constexpr float kSmallScreen = 800.0f;  // below, the panel would cover the cloud: it opens folded
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float width = std::clamp(kShare * screen.x, widgets::ems(kNarrowest), widgets::ems(kWidest));
@@ -50,7 +51,7 @@ void mainPanel(UiState& state, const UiFacts& facts, UiWishes& wishes) {
   ImGui::SetNextWindowCollapsed(screen.x < kSmallScreen, ImGuiCond_Once);
   ImGui::SetNextWindowSizeConstraints({width, 0.0f}, {width, highest});
   if (ImGui::Begin("Nephele", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
-    ImGui::PushItemWidth(-kLabelShare * width);
+    ImGui::PushItemWidth(-widgets::ems(kLabels));
     fileParts(state, facts, wishes);
     lightParts(state, facts, wishes);
     liveParts(state, facts, wishes);

@@ -186,7 +186,7 @@ void runningWidgets(UiState& state, const LiveFacts& live, UiWishes& wishes) {
   button("reset", Action::resetParticles, wishes);
   ImGui::SameLine();
   button("bake this", Action::bakeThis, wishes);
-  ImGui::SameLine();
+  widgets::sameLineIfRoom("back to the file");
   button("back to the file", Action::liveParticles, wishes);
   if (live.frame < 0)
     ImGui::TextDisabled("before the first frame: %lld", static_cast<long long>(-live.frame));
@@ -203,7 +203,7 @@ void runningWidgets(UiState& state, const LiveFacts& live, UiWishes& wishes) {
 
 void liveParts(UiState& state, const UiFacts& facts, UiWishes& wishes) {
   if (!state.settings.particles) return;
-  widgets::group("particles", facts.live.has_value(), [&] {
+  widgets::group("Particles", facts.live.has_value(), [&] {
     if (!facts.live) {
       button("move them live", Action::liveParticles, wishes);
       return;
