@@ -2,8 +2,9 @@
 """Measures the previewer's real window of 640x360: frames a second during a drag of some seconds, and how near the picture is,
 3 s after the last input, to an accumulation of 1024 samples of the same view.
 
-usage: pace.py PREVIEW FILE.vdb [SAMPLES]     a measurement, not a test: figures are the machine's at that moment; 77: left out
-The reference is `--render` of the scene that the window saved: the same march and samples. Depends on window.py.
+usage: pace.py PREVIEW FILE.vdb [SAMPLES [FOLDER]]     a measurement, not a test: figures are the machine's at that moment; 77: left out
+The reference is `--render` of the scene that the window saved: the same march and samples; it takes minutes, and 0 SAMPLES
+leaves it out. A FOLDER keeps the window's picture, its scene and the reference. Depends on window.py.
 """
 import json
 import os
@@ -35,9 +36,10 @@ def sweep(start, end):
 def main():
     under_xvfb()
     preview, file = (os.path.abspath(path) for path in sys.argv[1:3])
-    samples = sys.argv[3] if len(sys.argv) > 3 else DEFAULT_SAMPLES
+    samples = int(sys.argv[3]) if len(sys.argv) > 3 else DEFAULT_SAMPLES
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+        folder = Path(sys.argv[4] if len(sys.argv) > 4 else name).absolute()
+        folder.mkdir(exist_ok=True)
         w = Window(preview, folder, file, size=(WIDTH, HEIGHT), scene=None)
         w.key("h")
         for i in range(DRAGS):
@@ -54,6 +56,8 @@ def main():
         w.until_said(".scene.yaml")
         scene = next(folder.glob("*.scene.yaml"))
         code = w.end()
+        if samples == 0:
+            return code
         subprocess.run([preview, file, "--render", folder / "reference.exr", "--scene", scene, "--size", f"{WIDTH}x{HEIGHT}",
                         "--spp", str(samples)], check=True, stderr=subprocess.DEVNULL)
         told = subprocess.run([preview, "compare", folder / "nephele_0001.exr", folder / "reference.exr", "--json"], check=True,
