@@ -7,6 +7,7 @@
 #include <span>
 
 #include "bake/trial.h"
+#include "base/density_step.h"
 #include "base/figures.h"
 #include "volume/chords.h"
 
@@ -35,6 +36,7 @@ Asset lookOf(const Asset& asset, double voxelSize, Precision precision, int octa
   look.voxelSize = voxelSize;
   look.precision = precision;
   look.mostOctaves = octaves;
+  look.densityStep = 0.0;
   return look;
 }
 
@@ -42,6 +44,7 @@ Asset lookOf(const Asset& asset, double voxelSize, Precision precision, int octa
 struct Seen {
   std::vector<std::vector<double>> depths;  // by frame
   double voxels = 0.0;                      // of the frame that has most
+  double maximum = 0.0;                     // of all frames' densities
 
   bool nothing() const {
     for (const std::vector<double>& frame : depths)
@@ -103,6 +106,7 @@ class Rays {
       TrialBaker::Depths found = baker_->depths(n, look, chords_[n]);
       seen.depths.push_back(std::move(found.depths));
       seen.voxels = std::max(seen.voxels, found.voxels);
+      seen.maximum = std::max(seen.maximum, found.maximum);
     }
     return seen;
   }
@@ -131,7 +135,13 @@ class Search {
     choice_.asset = wholeLook(size_);
     if (!(asset_.precisionGiven && asset_.precision == Precision::single)) takeHalf();
     takeFewerOctaves();
-    if (!asset_.particles) confirm();
+    const std::vector<Rays> groups = confirmingRays();
+    std::vector<Seen> references;
+    if (asset_.particles)
+      references.push_back(std::move(reference_));
+    else
+      confirm(groups, references);
+    if (!asset_.densityStepGiven) takeStep(groups, references);
     tellWhatIsLeftOut();
     choice_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(choice_);
@@ -145,8 +155,13 @@ class Search {
   /// Holds a look against a reference, and writes that down.
   double measure(const Asset& look, const Seen& seen, const Seen& reference) {
     const double error = errorOf(reference, seen);
-    choice_.trials.push_back({look.voxelSize, look.precision, look.mostOctaves, error, seen.voxels});
+    note(look, error, seen.voxels);
     return error;
+  }
+
+  void note(const Asset& look, double error, double voxels) {
+    choice_.trials.push_back(
+        {look.voxelSize, look.precision, look.mostOctaves, look.densityStep, error, voxels});
   }
 
   double firstSize() const {
@@ -236,11 +251,15 @@ class Search {
       if (!take(lookOf(asset_, size_, choice_.asset.precision, most))) return;
   }
 
-  /// Until rays that had no part in the search hold too: octaves back first, then finer voxels.
-  void confirm() {
-    const std::vector<Rays> groups = Rays(baker_, kConfirmingRays, kConfirmingSeed).groups(kChoiceRays);
-    std::vector<Seen> references;
-    while (!reference_.nothing() && !holdsAlong(groups, references)) {
+  /// Rays that had no part in the search; for particles, which are seen by so many from the start, the same.
+  std::vector<Rays> confirmingRays() const {
+    if (asset_.particles) return {*rays_};
+    return Rays(baker_, kConfirmingRays, kConfirmingSeed).groups(kChoiceRays);
+  }
+
+  /// Until those rays hold too: octaves back first, then finer voxels.
+  void confirm(const std::vector<Rays>& groups, std::vector<Seen>& references) {
+    while (!reference_.nothing() && !holdsAlong(groups, choice_.asset, references)) {
       if (choice_.asset.mostOctaves != kAllOctaves) {
         const int more = choice_.asset.mostOctaves + 1;
         choice_.asset.mostOctaves = more < largestOctaves(asset_) ? more : kAllOctaves;
@@ -253,21 +272,36 @@ class Search {
     }
   }
 
-  /// Whether all rays hold what was chosen; `references` are what the first groups see of the reference, and
-  /// grow. What is too wrong for one group is not shown to the next.
-  bool holdsAlong(const std::vector<Rays>& groups, std::vector<Seen>& references) {
+  /// Whether all rays hold a look; `references` are what the first groups see of the reference, and grow.
+  /// What is too wrong for one group is not shown to the next.
+  bool holdsAlong(const std::vector<Rays>& groups, const Asset& look, std::vector<Seen>& references) {
     double worst = 0.0, voxels = 0.0;
     for (size_t n = 0; n < groups.size() && worst <= limit(); ++n) {
       if (n == references.size()) references.push_back(groups[n].see(wholeLook(0.5 * size_)));
-      const Seen seen = groups[n].see(choice_.asset);
+      const Seen seen = groups[n].see(look);
       if (tooMany(seen.voxels)) refuse();
       worst = std::max(worst, errorOf(references[n], seen));
       voxels = std::max(voxels, seen.voxels);
     }
-    const Asset& look = choice_.asset;
-    choice_.measured = worst;
-    choice_.trials.push_back({look.voxelSize, look.precision, look.mostOctaves, worst, voxels});
+    note(look, worst, voxels);
+    if (worst <= limit()) choice_.measured = worst;
     return worst <= limit();
+  }
+
+  /// From the coarsest step on to the first that holds; none where none does.
+  void takeStep(const std::vector<Rays>& groups, std::vector<Seen>& references) {
+    double largest = 0.0;
+    for (const Seen& reference : references) largest = std::max(largest, reference.maximum);
+    if (largest == 0.0) return;
+    const double finest = densityStepFor(largest, kMostLevels);
+    Asset look = choice_.asset;
+    for (look.densityStep = densityStepFor(largest, kFewestLevels); look.densityStep >= finest;
+         look.densityStep *= 0.5)
+      if (holdsAlong(groups, look, references)) {
+        choice_.asset = look;
+        return;
+      }
+    choice_.leftOut.push_back("no step of densities is within the tolerance");
   }
 
   void tellWhatIsLeftOut() {
@@ -295,6 +329,10 @@ class Search {
 
 }  // namespace
 
+Asset finerThan(const Asset& look) {
+  return lookOf(look, 0.5 * look.voxelSize, Precision::single, kAllOctaves);
+}
+
 Choice chooseFor(const Pipeline& pipeline, const Asset& asset, const std::string& outFolder) {
   return Search(pipeline, asset, outFolder).run();
 }
@@ -304,6 +342,7 @@ std::string choiceAsText(const Choice& choice) {
   std::string text = "tolerance " + percent(choice.asked) + ": voxel_size " + shown(asset.voxelSize) + ", " +
                      (asset.precision == Precision::half ? "half" : "float");
   if (asset.mostOctaves != kAllOctaves) text += ", at most " + std::to_string(asset.mostOctaves) + " octaves";
+  if (asset.densityStep > 0.0) text += ", density_step " + number(asset.densityStep);
   text += "; measured " + percent(choice.measured) + " of the largest optical depth along " +
           std::to_string(choice.rays) + " rays against half the voxel size";
   for (size_t n = 0; n < choice.leftOut.size(); ++n)

@@ -1,6 +1,6 @@
-// `tolerance` in place of a voxel size: the coarsest voxels, half or float, and the fewest octaves whose
-// optical depths stay within it of the same recipe at half the voxel size. Depends on pipeline, trial;
-// no OpenVDB.
+// `tolerance` in place of a voxel size: the coarsest voxels, half or float, the fewest octaves and the
+// coarsest step of densities whose optical depths stay within it of the same recipe at half the voxel size.
+// Depends on pipeline, trial; no OpenVDB.
 #pragma once
 
 #include <optional>
@@ -17,6 +17,7 @@ struct ChoiceTrial {
   double voxelSize = 0.0;
   Precision precision = Precision::single;
   int mostOctaves = kAllOctaves;
+  double densityStep = 0.0;
   double error = 0.0;   // largest depth difference over the largest depth of all frames
   double voxels = 0.0;  // about as many active ones, but for constant space
 };
@@ -39,14 +40,22 @@ inline constexpr uint64_t kChoiceRays = 10000;
 inline constexpr uint64_t kConfirmingRays = 50000;
 inline constexpr double kChoiceShare = 0.8;
 
+/// Steps of densities that are tried: from a sixteenth of the largest density, coarser than which no file
+/// gets smaller, to a 512th, which saves a tenth of the bytes at most.
+inline constexpr double kFewestLevels = 16.0, kMostLevels = 512.0;
+
 /// Chooses for an asset with a tolerance: halves the voxels until the tolerance holds, bisects between the
 /// last two sizes, then takes half precision and octaves away where that keeps it. What is left is confirmed
-/// by other rays, and given its octaves again and finer voxels until they hold too. Density fields are
+/// by other rays, and given its octaves again and finer voxels until they hold too. Last come steps of
+/// densities: the coarsest that all of these rays hold. Density fields are
 /// evaluated where rays go; particles are baked, and seen by as many rays at once from the start. Sequences
 /// are measured at their first, middle and last frame. The same on any number of threads and for any part of
 /// the frames. Throws InputError where the tolerance asks for more voxels than is measured, saying what was
 /// reached, and where the asset cannot be baked.
 Choice chooseFor(const Pipeline& pipeline, const Asset& asset, const std::string& outFolder);
+
+/// What a look is held against: half its voxel size, float, all octaves, no step.
+Asset finerThan(const Asset& look);
 
 /// One line: what was asked, chosen, measured and left out; the file's metadata holds it.
 std::string choiceAsText(const Choice& choice);

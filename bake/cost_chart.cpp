@@ -9,6 +9,7 @@
 
 #include "bake/choice.h"
 #include "bake/trial.h"
+#include "base/density_step.h"
 #include "base/progress.h"
 #include "volume/difference.h"
 
@@ -21,6 +22,8 @@ constexpr double kMostReferenceVoxels = 2.5e7;
 constexpr int kSizeSteps = 5;
 constexpr double kReferenceCutoff = 0.1;  // of the asset's
 constexpr double kCutoffs[] = {0.1, 10.0, 100.0};
+// Levels that steps cut densities into, up to the largest.
+constexpr double kLevels[] = {256.0, 64.0, 16.0};
 constexpr uint64_t kRays = 10000;
 // Joint settings that are measured: as many as are likeliest to be on a front.
 constexpr size_t kMostJoint = 16;
@@ -55,11 +58,18 @@ class CostSweep {
     return frames[frames.size() / 2];
   }
 
-  Asset lookOf(double size, Precision precision, int octaves, double cutoff) const {
+  Asset ofSize(double size) const {
     Asset look = asset_;
     look.voxelSize = size;
-    look.precision = precision;
-    look.mostOctaves = octaves;
+    look.mostOctaves = kAllOctaves;
+    return look;
+  }
+
+  /// As exact as can be stored.
+  Asset exactOf(double size, double cutoff) const {
+    Asset look = ofSize(size);
+    look.precision = Precision::single;
+    look.densityStep = 0.0;
     look.cutoff = cutoff;
     return look;
   }
@@ -69,8 +79,7 @@ class CostSweep {
     double finest = asset_.voxelSize;
     // Four times as coarse as asked tells how many voxels there will be.
     constexpr double kProbe = 4.0;
-    const double active = double(
-        baker_.bake(0, lookOf(kProbe * finest, Precision::single, kAllOctaves, asset_.cutoff)).voxelsActive);
+    const double active = double(baker_.bake(0, exactOf(kProbe * finest, asset_.cutoff)).voxelsActive);
     const double perReference = active * std::pow(2.0 * kProbe, 3.0);
     const double shrink = std::cbrt(std::max(1.0, perReference / kMostReferenceVoxels));
     if (shrink > 1.0) {
@@ -82,26 +91,28 @@ class CostSweep {
       chart_.leftOut.push_back(text);
     }
     chart_.referenceSize = 0.5 * finest;
-    TrialBake bake = baker_.bake(
-        0, lookOf(chart_.referenceSize, Precision::single, kAllOctaves, kReferenceCutoff * asset_.cutoff));
+    TrialBake bake = baker_.bake(0, exactOf(chart_.referenceSize, kReferenceCutoff * asset_.cutoff));
     chart_.referenceVoxels = bake.voxelsActive;
+    largest_ = bake.maximum;
     reference_ = std::move(bake.bricks);
     return finest;
   }
 
   std::vector<std::pair<std::string, Asset>> looksFrom(double finest) const {
     std::vector<std::pair<std::string, Asset>> looks;
-    for (int n = 0; n < kSizeSteps; ++n)
-      looks.emplace_back("voxel size", lookOf(finest * std::pow(std::numbers::sqrt2, n), asset_.precision,
-                                              kAllOctaves, asset_.cutoff));
+    const auto add = [&](const char* sweep, const Asset& from) -> Asset& {
+      return looks.emplace_back(sweep, from).second;
+    };
+    const auto sizeOf = [&](int n) { return finest * std::pow(std::numbers::sqrt2, n); };
+    for (int n = 0; n < kSizeSteps; ++n) add("voxel size", ofSize(sizeOf(n)));
     for (int most = largestOctaves(asset_) - 1; most >= 1; --most)
-      looks.emplace_back("octaves", lookOf(finest, asset_.precision, most, asset_.cutoff));
+      add("octaves", ofSize(finest)).mostOctaves = most;
     const Precision other = asset_.precision == Precision::half ? Precision::single : Precision::half;
-    for (int n = 0; n < kSizeSteps; n += 2)
-      looks.emplace_back(
-          "precision", lookOf(finest * std::pow(std::numbers::sqrt2, n), other, kAllOctaves, asset_.cutoff));
-    for (const double factor : kCutoffs)
-      looks.emplace_back("cutoff", lookOf(finest, asset_.precision, kAllOctaves, factor * asset_.cutoff));
+    for (int n = 0; n < kSizeSteps; n += 2) add("precision", ofSize(sizeOf(n))).precision = other;
+    if (largest_ > 0.0)
+      for (const double levels : kLevels)
+        add("density step", ofSize(finest)).densityStep = densityStepFor(largest_, levels);
+    for (const double factor : kCutoffs) add("cutoff", ofSize(finest)).cutoff = factor * asset_.cutoff;
     return looks;
   }
 
@@ -141,6 +152,7 @@ class CostSweep {
   const bool quiet_;
   std::string file_;
   BrickVolume reference_;
+  double largest_ = 0.0;  // density of the reference
   CostChart chart_;
 };
 

@@ -12,7 +12,8 @@ namespace nephele {
 
 /// One bake, measured against the reference.
 struct CostPoint {
-  std::string sweep;  // what was varied: "voxel size", "octaves", "precision", "cutoff"; "joint": several
+  std::string sweep;  // what was varied: "voxel size", "octaves", "precision", "density step",
+                      // "cutoff"; "joint": several
   Asset look;
   double seconds = 0.0;  // of filling and writing
   uint64_t fileBytes = 0, gridBytes = 0, voxelsActive = 0;
@@ -46,10 +47,11 @@ struct CostChart {
   std::vector<std::string> leftOut;
 };
 
-/// Bakes the asset (a sequence's middle frame) over voxel sizes round its own, octaves, precision and cutoff,
-/// one at a time, then those joint settings that are expected on a front, and holds each against a reference
-/// of half the smallest voxel size. Files are written into `folder`, measured and removed. Where the
-/// reference would be too large, the finest sizes are left out and named. Throws InputError or WorldError.
+/// Bakes the asset (a sequence's middle frame) over voxel sizes round its own, octaves, precision, density
+/// step and cutoff, one at a time, then those joint settings that are expected on a front, and holds each
+/// against a reference of half the smallest voxel size. Files are written into `folder`, measured and
+/// removed. Where the reference would be too large, the finest sizes are left out and named. Throws
+/// InputError or WorldError.
 CostChart measureCosts(const Pipeline& pipeline, const Asset& asset, const std::string& folder, bool quiet);
 
 /// The fronts of the points, in the chart's order. What misses all of the depth somewhere is on none.

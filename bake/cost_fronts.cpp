@@ -17,6 +17,7 @@ constexpr std::pair<CostError, CostKind> kFronts[] = {
 void takeFrom(const CostPoint& other, Asset& setting) {
   if (other.sweep == "octaves") setting.mostOctaves = other.look.mostOctaves;
   if (other.sweep == "precision") setting.precision = other.look.precision;
+  if (other.sweep == "density step") setting.densityStep = other.look.densityStep;
   if (other.sweep == "cutoff") setting.cutoff = other.look.cutoff;
 }
 
@@ -40,7 +41,8 @@ CostPoint with(const CostPoint& at, const CostPoint& change, const CostPoint& ba
 bool isMeasured(const std::vector<CostPoint>& points, const Asset& look) {
   return std::any_of(points.begin(), points.end(), [&](const CostPoint& p) {
     return p.look.voxelSize == look.voxelSize && p.look.precision == look.precision &&
-           p.look.mostOctaves == look.mostOctaves && p.look.cutoff == look.cutoff;
+           p.look.mostOctaves == look.mostOctaves && p.look.cutoff == look.cutoff &&
+           p.look.densityStep == look.densityStep;
   });
 }
 

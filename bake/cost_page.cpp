@@ -21,7 +21,8 @@ std::string octavesOf(const Asset& look) {
 
 std::string nameOf(const Asset& look) {
   return "voxel_size " + number(look.voxelSize) + ", " + precisionOf(look) + ", octaves " + octavesOf(look) +
-         ", cutoff " + number(look.cutoff);
+         (look.densityStep > 0.0 ? ", density_step " + number(look.densityStep) : "") + ", cutoff " +
+         number(look.cutoff);
 }
 
 std::string nameOf(CostKind kind) {
@@ -48,16 +49,16 @@ bool isMainKnee(const CostChart& chart, size_t point) {
 
 Table tableOf(const CostChart& chart) {
   Table table;
-  table.header = {"sweep",        "voxel_size",    "precision",  "octaves",       "cutoff",
-                  "seconds",      "file_bytes",    "grid_bytes", "voxels_active", "density_largest",
-                  "density_rmse", "depth_largest", "depth_rms",  "fronts"};
+  table.header = {"sweep",           "voxel_size",   "precision",     "octaves",    "density_step",
+                  "cutoff",          "seconds",      "file_bytes",    "grid_bytes", "voxels_active",
+                  "density_largest", "density_rmse", "depth_largest", "depth_rms",  "fronts"};
   for (size_t n = 0; n < chart.points.size(); ++n) {
     const CostPoint& p = chart.points[n];
     table.rows.push_back({p.sweep, number(p.look.voxelSize), precisionOf(p.look), octavesOf(p.look),
-                          number(p.look.cutoff), number(p.seconds), std::to_string(p.fileBytes),
-                          std::to_string(p.gridBytes), std::to_string(p.voxelsActive),
-                          number(p.densityLargest), number(p.densityRmse), number(p.depthLargest),
-                          number(p.depthRms), frontsOf(chart, n)});
+                          number(p.look.densityStep), number(p.look.cutoff), number(p.seconds),
+                          std::to_string(p.fileBytes), std::to_string(p.gridBytes),
+                          std::to_string(p.voxelsActive), number(p.densityLargest), number(p.densityRmse),
+                          number(p.depthLargest), number(p.depthRms), frontsOf(chart, n)});
   }
   return table;
 }

@@ -180,6 +180,7 @@ struct ParticleRun::State {
     settings.kernel = system.kernel;
     settings.cutoff = look.cutoff;
     settings.half = look.precision == Precision::half;
+    settings.densityStep = look.densityStep;
     settings.shutterSeconds = system.shutter / asset.fps;
     for (const std::string& grid : system.grids) {
       settings.vel = settings.vel || grid == "vel";

@@ -43,8 +43,8 @@ class ParticleRun {
 
   /// Brings the particles to `frame` and splats nothing; returns the steps that it took. Throws as frame().
   uint64_t moveTo(std::optional<int> frame);
-  /// The particles as they are, splatted with the voxel size, precision and cutoff of `look`, an asset like
-  /// the run's own. Throws InputError on particles that cannot be splatted.
+  /// The particles as they are, splatted with the voxel size, precision, density step and cutoff of `look`,
+  /// an asset like the run's own. Throws InputError on particles that cannot be splatted.
   Splatted splatted(const Asset& look) const;
 
   /// The box of the particles as they are, with their radii; empty where there are none.

@@ -11,6 +11,8 @@
 #include "bake/fields/motion.h"
 #include "bake/pipeline_identity.h"
 #include "bake/pipeline_particles.h"
+#include "base/density_step.h"
+#include "base/figures.h"
 #include "base/hash.h"
 #include "base/tolerance.h"
 #include "base/version.h"
@@ -192,6 +194,19 @@ void readTolerance(yaml::MapReader& reader, const std::string& what, Asset& asse
     out.add(node->where, "'tolerance' must lie between 0 and 100%, ends excluded");
 }
 
+/// A power of two, or 0; beside a tolerance 0 alone, which chooses it otherwise.
+void readDensityStep(yaml::MapReader& reader, Asset& asset, Diagnostics& out) {
+  asset.densityStepGiven = reader.has("density_step");
+  asset.densityStep = reader.number("density_step", 0.0, kNonNegative);
+  if (asset.densityStep == 0.0) return;
+  if (!isDensityStep(asset.densityStep))
+    out.add(reader.where("density_step"), "'density_step' must be 0 or a power of two from 2^-24 to 2^15",
+            "for example " + number(densityStepFor(asset.densityStep, 1.0)));
+  else if (asset.tolerance)
+    out.add(reader.where("density_step"), "'tolerance' chooses 'density_step'",
+            "give 0 where densities are to stay as precise as they can be");
+}
+
 Asset readAsset(const yaml::Entry& entry, const std::string& folder, FieldReader& fields, Diagnostics& out) {
   Asset asset;
   asset.name = entry.key;
@@ -213,6 +228,7 @@ Asset readAsset(const yaml::Entry& entry, const std::string& folder, FieldReader
   readFrames(reader, asset, out);
   readLoop(reader, asset, out);
   readTolerance(reader, what, asset, out);
+  readDensityStep(reader, asset, out);
   readContent(reader, what, folder, fields, asset, out);
   readVelocity(reader, asset, fields, out);
   checkLoop(asset, out);
@@ -367,8 +383,10 @@ std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::option
   if (asset.tolerance) {
     hasher.value(*asset.tolerance);
     hasher.value(int(asset.precisionGiven));
+    hasher.value(int(asset.densityStepGiven));
   }
   hasher.value(int(asset.precision));
+  hasher.value(asset.densityStep);
   hasher.value(asset.cutoff);
   const BuildContext context = contextOf(pipeline, asset, frame);
   hasher.value(context.loop ? 0.0 : context.time);

@@ -45,6 +45,8 @@ struct Asset {
   bool precisionGiven = false;
   int mostOctaves = kAllOctaves;  // of a fractal sum
   Precision precision = Precision::half;
+  double densityStep = 0.0;  // stored densities are multiples of this power of two; 0: as precise as can be
+  bool densityStepGiven = false;
   double cutoff = 0.001;  // voxels at or below are inactive and 0
   std::optional<FrameRange> frames;
   double fps = 24.0;
@@ -88,9 +90,9 @@ BuildContext contextOf(const Pipeline& pipeline, const Asset& asset, std::option
 std::vector<LoopNote> loopNotesOf(const Asset& asset);
 
 /// 32 hex digits of everything that the asset's content depends on: its fields with all parameters, voxel
-/// size, contents of the files they name, cutoff, precision, up axis, seed, medium, time (in a loop the
-/// frame's place in it), and the program's
-/// version and sources (pipeline_identity.h). Equal recipes written differently give equal hashes.
+/// size, contents of the files they name, cutoff, precision, density step, up axis, seed, medium, time (in a
+/// loop the frame's place in it), and the program's version and sources (pipeline_identity.h). Equal recipes
+/// written differently give equal hashes.
 std::string recipeHash(const Pipeline& pipeline, const Asset& asset, std::optional<int> frame = {});
 
 /// The same of all that the motion of an asset's particles depends on, and nothing else: its checkpoints go

@@ -66,6 +66,7 @@ Json toleranceJson(const Choice& choice) {
     tried.push_back({{"voxel_size", trial.voxelSize},
                      {"precision", precisionName(trial.precision)},
                      {"most_octaves", octaves(trial.mostOctaves)},
+                     {"density_step", trial.densityStep},
                      {"error", trial.error},
                      {"voxels_about", std::round(trial.voxels)}});
   return {{"asked", choice.asked},
@@ -74,6 +75,7 @@ Json toleranceJson(const Choice& choice) {
           {"voxel_size", choice.asset.voxelSize},
           {"precision", precisionName(choice.asset.precision)},
           {"most_octaves", octaves(choice.asset.mostOctaves)},
+          {"density_step", choice.asset.densityStep},
           {"tried", tried},
           {"left_out", choice.leftOut},
           {"seconds", choice.seconds}};

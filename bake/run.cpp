@@ -62,6 +62,7 @@ Provenance provenanceOf(const Pipeline& pipeline, const BakeJob& job, const std:
   provenance.recipeHash = hash;
   provenance.seed = pipeline.seed;
   provenance.frame = job.frame;
+  if (job.asset->densityStep > 0.0) provenance.densityStep = job.asset->densityStep;
   if (job.asset->particles) {
     provenance.particles = writeParticles(*job.asset->particles);
     provenance.fps = job.asset->fps;
@@ -105,8 +106,12 @@ std::optional<std::vector<BandLimitNote>> bandLimitOf(const Pipeline& pipeline, 
 
 VoxelizeSettings settingsOf(const Asset& asset, const BakeOptions& options) {
   const bool vel = asset.velocityFromMotion || !asset.velocityFields.empty();
-  return {asset.voxelSize, asset.cutoff, asset.precision == Precision::half, options.memoryBytes,
-          vel ? kVelocityLeafBytes : 0};
+  return {asset.voxelSize,
+          asset.cutoff,
+          asset.precision == Precision::half,
+          options.memoryBytes,
+          vel ? kVelocityLeafBytes : 0,
+          asset.densityStep};
 }
 
 std::string refusalOf(const Asset& asset, const VoxelizeError& error) {

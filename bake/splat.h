@@ -30,8 +30,9 @@ struct SplatParticles {
 struct SplatSettings {
   double voxelSize = 1.0;  // world units, > 0; sample (0, 0, 0) lies at the world's origin
   SplatKernel kernel = SplatKernel::wendland;
-  double cutoff = 0.001;  // values at or below become inactive and 0
-  bool half = true;       // round values to half precision, as the file will store them
+  double cutoff = 0.001;     // values at or below become inactive and 0
+  bool half = true;          // round values to half precision, as the file will store them
+  double densityStep = 0.0;  // densities are rounded to multiples of this power of two first; 0: they are not
   double shutterSeconds = 0.0;
   bool vel = false, temperature = false, age = false;  // grids beside density
   FieldPtr erosion;  // read in each particle's frame: its centre is the origin, its radius 1; null for none
@@ -40,7 +41,7 @@ struct SplatSettings {
 };
 
 /// Masses in density · world units³: given = splatted + outsideBox (up to rounding), splatted = stored +
-/// lostToCutoff + lostToHalf.
+/// lostToCutoff + lostToHalf, what rounding takes, by a step too.
 struct SplatLedger {
   double given = 0.0, splatted = 0.0, outsideBox = 0.0, lostToCutoff = 0.0, lostToHalf = 0.0, stored = 0.0;
 };

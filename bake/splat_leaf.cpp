@@ -60,9 +60,10 @@ void SplatLeaves::close(const Coord& origin, OpenLeaf& open, SplatLedger& ledger
   float* const values = open.density->buffer().data();
   if (settings_.box) cutToBox(origin, values);
   const LeafRules rules{float(settings_.cutoff),
-                        settings_.half ? kHalfLargest : std::numeric_limits<float>::max(), settings_.half};
+                        settings_.half ? kHalfLargest : std::numeric_limits<float>::max(), settings_.half,
+                        float(settings_.densityStep)};
   // Floats above 0 that are neither cut nor rounded are stored as they are.
-  const bool lossless = !rules.half && rules.cutoff <= 0.0f && !extras();
+  const bool lossless = !rules.half && rules.step <= 0.0f && rules.cutoff <= 0.0f && !extras();
   float sums[kLeafVoxels];
   if (!lossless) std::copy_n(values, kLeafVoxels, sums);
   const LeafScan scan = scanLeaf(rules, values);

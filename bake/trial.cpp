@@ -54,6 +54,15 @@ double sizeToSee(const Box& box, const TrialBaker::Extent& extent) {
   return size;
 }
 
+VoxelizeSettings settingsOf(const Asset& look) {
+  VoxelizeSettings settings;
+  settings.voxelSize = look.voxelSize;
+  settings.cutoff = look.cutoff;
+  settings.half = look.precision == Precision::half;
+  settings.densityStep = look.densityStep;
+  return settings;
+}
+
 }  // namespace
 
 struct TrialBaker::State {
@@ -79,11 +88,11 @@ struct TrialBaker::State {
     const auto start = std::chrono::steady_clock::now();
     const FieldPtr field = buildField(*asset.density, context);
     try {
-      const Voxelized voxelized =
-          voxelize(*field, {look.voxelSize, look.cutoff, look.precision == Precision::half});
+      const Voxelized voxelized = voxelize(*field, settingsOf(look));
       if (!file.empty()) result.fileBytes = writeDensity(file, voxelized, Provenance{});
       result.seconds = secondsSince(start);
       result.voxelsActive = voxelized.voxelsActive;
+      result.maximum = voxelized.maximum;
       result.gridBytes = voxelized.gridBytes;
       result.bricks = bricksOf(voxelized);
     } catch (const VoxelizeError& error) {
@@ -99,6 +108,7 @@ struct TrialBaker::State {
     if (!file.empty()) result.fileBytes = writeSplatted(file, splatted, Provenance{});
     result.seconds = secondsSince(start);
     result.voxelsActive = splatted.voxelsActive;
+    result.maximum = splatted.maximum;
     result.gridBytes = splatted.gridBytes;
     result.bricks = bricksOf(splatted);
     return result;
@@ -143,15 +153,13 @@ Chords TrialBaker::chords(size_t frame, uint64_t count, uint64_t seed) const {
 TrialBaker::Depths TrialBaker::depths(size_t frame, const Asset& look, const Chords& chords) const {
   if (state_->asset.particles) {
     const TrialBake baked = bake(frame, look);
-    return {depthsAlong(baked.bricks, chords.lines), double(baked.voxelsActive)};
+    return {depthsAlong(baked.bricks, chords.lines), double(baked.voxelsActive), baked.maximum};
   }
   const Asset& asset = state_->asset;
   try {
-    RayDepths found =
-        depthsAlong(*state_->fieldOf(frame, look),
-                    {look.voxelSize, look.cutoff, look.precision == Precision::half}, chords.lines);
+    RayDepths found = depthsAlong(*state_->fieldOf(frame, look), settingsOf(look), chords.lines);
     const double voxel = look.voxelSize * look.voxelSize * look.voxelSize;
-    return {std::move(found.depths), chords.volumeOf(found.lengthVaried) / voxel};
+    return {std::move(found.depths), chords.volumeOf(found.lengthVaried) / voxel, found.maximum};
   } catch (const VoxelizeError& error) {
     throw InputError(asset.where, "asset '" + asset.name + "': " + error.what());
   }

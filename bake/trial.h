@@ -1,5 +1,5 @@
-// Bakes in memory, to be measured and thrown away: one asset at any voxel size, precision, octaves and
-// cutoff. Depends on pipeline, voxelize, splat, particle_run; no OpenVDB.
+// Bakes in memory, to be measured and thrown away: one asset at any voxel size, precision, density
+// step, octaves and cutoff. Depends on pipeline, voxelize, splat, particle_run; no OpenVDB.
 #pragma once
 
 #include <memory>
@@ -16,6 +16,7 @@ namespace nephele {
 struct TrialBake {
   BrickVolume bricks;
   uint64_t voxelsActive = 0;
+  double maximum = 0.0;
   uint64_t gridBytes = 0;  // in memory
   uint64_t fileBytes = 0;  // 0 where no file was asked for
   double seconds = 0.0;    // of filling, and of writing where a file was asked for
@@ -32,8 +33,8 @@ class TrialBaker {
   ~TrialBaker();
 
   size_t frameCount() const;
-  /// The asset's frame with the voxel size, precision, octaves and cutoff of `look`, an asset like it. Writes
-  /// the file as well where `file` is not empty. Throws InputError on what cannot be baked.
+  /// The asset's frame with the voxel size, precision, density step, octaves and cutoff of `look`, an asset
+  /// like it. Writes the file as well where `file` is not empty. Throws InputError on what cannot be baked.
   TrialBake bake(size_t frame, const Asset& look, const std::string& file = {}) const;
 
   /// `count` chords of the sphere round what the frame holds, found by a coarse bake; each seed has its own.
@@ -41,6 +42,7 @@ class TrialBaker {
   struct Depths {
     std::vector<double> depths;  // one a chord
     double voxels = 0.0;         // about as many active ones, but for constant space
+    double maximum = 0.0;        // of the densities that rays come near
   };
   /// Optical depths of bake(frame, look) along chords of the frame. Of a density field nothing is baked: the
   /// voxels that rays come near are evaluated.

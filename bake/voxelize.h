@@ -21,6 +21,7 @@ struct VoxelizeSettings {
   bool half = true;        // round values to half precision, as the file will store them
   uint64_t memoryBytes = std::numeric_limits<uint64_t>::max();  // what the grid may take
   uint64_t bytesBeside = 0;  // of that, what other grids take for each leaf of it (kVelocityLeafBytes)
+  double densityStep = 0.0;  // values are rounded to multiples of this power of two first; 0: they are not
 };
 
 /// What a leaf of 8³ velocities takes in memory, node and allocator included.

@@ -51,7 +51,7 @@ LeafFiller::LeafFiller(const Field& field, const VoxelizeSettings& settings)
     : field_(field),
       settings_(settings),
       rules_{float(settings.cutoff), settings.half ? kHalfLargest : std::numeric_limits<float>::max(),
-             settings.half} {
+             settings.half, float(settings.densityStep)} {
   if (settings_.voxelSize < kSmallestVoxel)
     throw VoxelizeError("voxels of " + shown(settings_.voxelSize) + " world units are below " +
                         shown(kSmallestVoxel) + ", the smallest that a .vdb can hold; use larger units");

@@ -26,6 +26,8 @@ constexpr size_t kParts = kSumLanes / kLanes;
 using Tag = hn::CappedTag<float, kLanes>;
 using V = hn::Vec<Tag>;
 
+constexpr float kLeastHalf = 5.9604644775390625e-8f;  // 2^-24
+
 // To half precision and back, ties to even, for 0 <= v <= 65504.
 HWY_INLINE V throughHalf(V v) {
   const Tag d;
@@ -42,6 +44,21 @@ HWY_INLINE V throughHalf(V v) {
   return hn::IfThenElse(hn::Lt(v, hn::Set(d, kLeastNormal)), hn::Sub(hn::Add(v, shift), shift), normal);
 }
 
+// To multiples of `step`, or of the power of two below v where that is less, but not than `least`; ties to
+// even, for 0 <= v <= limit. What exceeds the limit then is rounded down.
+HWY_INLINE V throughStep(V v, V step, V least, V limit) {
+  const Tag d;
+  const hn::RebindToUnsigned<Tag> du;
+  constexpr uint32_t kExponent = 0x7f800000u;
+  const V power = hn::BitCast(d, hn::And(hn::BitCast(du, v), hn::Set(du, kExponent)));
+  const V unit = hn::Max(hn::Min(step, power), least);
+  // Floats from 2^23 to 2^24 units are whole units, and so are all above.
+  const V shift = hn::Mul(unit, hn::Set(d, 0x1p23f));
+  const V whole = hn::Sub(hn::Add(v, shift), shift);
+  const V rounded = hn::IfThenElse(hn::Lt(v, shift), whole, v);
+  return hn::IfThenElse(hn::Gt(rounded, limit), hn::Sub(rounded, unit), rounded);
+}
+
 // The mask's bits, lane 0 lowest.
 HWY_INLINE uint64_t bitsOf(hn::Mask<Tag> mask) {
   uint8_t bytes[8] = {};  // what StoreMaskBits may write
@@ -51,10 +68,11 @@ HWY_INLINE uint64_t bitsOf(hn::Mask<Tag> mask) {
   return bits & ((uint64_t(1) << kLanes) - 1);
 }
 
-template <bool kHalf>
+template <bool kHalf, bool kStep>
 HWY_INLINE void scan(const LeafRules& rules, float* values, LeafScan& result) {
   const Tag d;
   const V zero = hn::Zero(d), cutoff = hn::Set(d, rules.cutoff), limit = hn::Set(d, rules.limit),
+          step = hn::Set(d, rules.step), unit = hn::Set(d, kHalf ? kLeastHalf : 0.0f),
           least = hn::Set(d, -std::numeric_limits<float>::max());
   V mass[kParts], largest[kParts];
   for (size_t part = 0; part < kParts; ++part) mass[part] = largest[part] = zero;
@@ -68,6 +86,7 @@ HWY_INLINE void scan(const LeafRules& rules, float* values, LeafScan& result) {
         const V given = hn::LoadU(d, values + n + at);
         good = hn::And(good, hn::And(hn::Le(given, limit), hn::Ge(given, least)));
         V kept = hn::IfThenElseZero(hn::Gt(given, cutoff), given);
+        if (kStep) kept = throughStep(kept, step, unit, limit);
         if (kHalf) kept = hn::IfThenElseZero(hn::Gt(kept, zero), throughHalf(kept));
         hn::StoreU(kept, d, values + n + at);
         bits |= bitsOf(hn::Gt(kept, zero)) << at;
@@ -91,10 +110,14 @@ HWY_INLINE void scan(const LeafRules& rules, float* values, LeafScan& result) {
 }
 
 void scanOnTarget(const LeafRules& rules, float* values, LeafScan* result) {
-  if (rules.half)
-    scan<true>(rules, values, *result);
+  if (rules.half && rules.step > 0.0f)
+    scan<true, true>(rules, values, *result);
+  else if (rules.half)
+    scan<true, false>(rules, values, *result);
+  else if (rules.step > 0.0f)
+    scan<false, true>(rules, values, *result);
   else
-    scan<false>(rules, values, *result);
+    scan<false, false>(rules, values, *result);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -14,6 +14,7 @@ struct LeafRules {
   float cutoff = 0.0f;  // values at or below become 0 and inactive
   float limit = 0.0f;   // values above cannot be stored
   bool half = false;    // round to half precision, ties to even; what then is 0 becomes inactive
+  float step = 0.0f;    // before that, round to multiples of this power of two, ties to even; 0: do not
 };
 
 struct LeafScan {
@@ -24,7 +25,8 @@ struct LeafScan {
   float maximum = 0.0f;
 };
 
-/// Cuts and rounds values[512] in place and says what is left of them.
+/// Cuts and rounds values[512] in place and says what is left of them. With a step, a value below it becomes
+/// a power of two instead, so that none becomes 0; none is rounded up beyond the limit.
 LeafScan scanLeaf(const LeafRules& rules, float* values);
 
 }  // namespace nephele

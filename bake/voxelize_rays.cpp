@@ -49,8 +49,9 @@ struct Piece {
 
 /// Where sums of one piece go.
 struct PieceSum {
-  double sum = 0.0;     // of densities
-  uint32_t filled = 0;  // midpoints in density that varies
+  double sum = 0.0;      // of densities
+  uint32_t filled = 0;   // midpoints in density that varies
+  float maximum = 0.0f;  // of its block's samples; kept in the first of a block's or cube's pieces
 };
 
 ivec3 floored(const dvec3& p) { return ivec3(glm::floor(p)); }
@@ -178,6 +179,7 @@ class RaySampler {
       const double step = glm::distance(chord.from, chord.to) / walks_[pieces[n].chord].steps;
       result.depths[pieces[n].chord] += step * sums[n].sum;
       result.lengthVaried += step * sums[n].filled;
+      result.maximum = std::max(result.maximum, double(sums[n].maximum));
     }
   }
 
@@ -203,7 +205,7 @@ class RaySampler {
       const size_t begin = cubes[c], end = cubes[c + 1];
       const uint64_t corner = pieces[begin].key >> (3 * kCubeBits) << (3 * kCubeBits);
       if (const auto value = filler_.settledValue(originOf(corner), kCubeBlocks * kCells + 1)) {
-        for (size_t n = begin; n < end; ++n) sums[n].sum = double(*value) * (pieces[n].end - pieces[n].begin);
+        sumConstant(pieces, begin, end, *value, sums);
         return;
       }
       std::vector<size_t> blocks;
@@ -217,12 +219,19 @@ class RaySampler {
     return sums;
   }
 
+  /// The pieces [begin, end), all of them in constant space.
+  static void sumConstant(const std::vector<Piece>& pieces, size_t begin, size_t end, float value,
+                          std::vector<PieceSum>& sums) {
+    sums[begin].maximum = value;
+    for (size_t n = begin; n < end; ++n) sums[n].sum = double(value) * (pieces[n].end - pieces[n].begin);
+  }
+
   /// The pieces [begin, end), all of one block. Returns the number of voxels evaluated.
   size_t sumBlock(const std::vector<Piece>& pieces, size_t begin, size_t end,
                   std::vector<PieceSum>& sums) const {
     const Coord origin = originOf(pieces[begin].key);
     if (const auto value = filler_.settledValue(origin, kBlockEdge)) {
-      for (size_t n = begin; n < end; ++n) sums[n].sum = double(*value) * (pieces[n].end - pieces[n].begin);
+      sumConstant(pieces, begin, end, *value, sums);
       return 0;
     }
     const ivec3 corner(origin.x(), origin.y(), origin.z());
@@ -231,8 +240,9 @@ class RaySampler {
     const size_t needed = samplesOf(pieces, begin, end, corner, places);
     const bool few = needed <= kFewSamples;
     const size_t evaluated = few ? needed : size_t(kBlockPoints);
-    if (!(few ? filler_.scan(origin, places, needed, values) : filler_.scan(origin, values)).active)
-      return evaluated;
+    const LeafScan scan = few ? filler_.scan(origin, places, needed, values) : filler_.scan(origin, values);
+    if (!scan.active) return evaluated;
+    sums[begin].maximum = scan.maximum;
     for (size_t n = begin; n < end; ++n) {
       const Walk& walk = walks_[pieces[n].chord];
       for (int k = pieces[n].begin; k < pieces[n].end; ++k) {

@@ -14,6 +14,7 @@ struct RayDepths {
   std::vector<double> depths;  // one a chord
   double lengthVaried = 0.0;  // Σ of the chords' lengths where there is density and it is not constant space
   uint64_t voxelsEvaluated = 0;
+  double maximum = 0.0;  // of the densities that rays come near
 };
 
 /// depthsAlong() the grid that voxelize() would give, up to the rounding of fields on lattices that begin

@@ -27,14 +27,6 @@ struct Asked {
   bool trials = false;  // print what was tried as well, to stderr
 };
 
-Asset finerThan(const Asset& chosen) {
-  Asset finer = chosen;
-  finer.voxelSize *= 0.5;
-  finer.precision = Precision::single;
-  finer.mostOctaves = kAllOctaves;
-  return finer;
-}
-
 /// Bytes of the files of the frames that a choice measures.
 double bytesOf(const Pipeline& pipeline, const Asset& asset, const std::string& scratch) {
   const TrialBaker baker(pipeline, asset, sampledFrames(asset), scratch);
@@ -62,8 +54,8 @@ bool measure(const Pipeline& pipeline, double tolerance, const Asked& asked, con
   if (asked.trials)
     for (const ChoiceTrial& t : choice.trials)
       std::cerr << "  " << number(t.voxelSize, 3) << (t.precision == Precision::half ? " half " : " float ")
-                << t.mostOctaves << " octaves: " << percent(t.error) << ", " << number(t.voxels, 3)
-                << " voxels\n";
+                << t.mostOctaves << " octaves, step " << number(t.densityStep, 3) << ": " << percent(t.error)
+                << ", " << number(t.voxels, 3) << " voxels\n";
   const double fresh =
       depthError(pipeline, finerThan(choice.asset), choice.asset, kChoiceRays, asked.seed, scratch);
   const double chosenBytes = bytesOf(pipeline, choice.asset, scratch),
@@ -77,6 +69,7 @@ bool measure(const Pipeline& pipeline, double tolerance, const Asked& asked, con
             << " of " << number(own.voxelSize, 3) << " | "
             << (choice.asset.precision == Precision::half ? "half" : "float") << " | "
             << (choice.asset.mostOctaves == kAllOctaves ? "all" : std::to_string(choice.asset.mostOctaves))
+            << " | " << (choice.asset.densityStep > 0.0 ? number(choice.asset.densityStep, 3) : "none")
             << " | " << percent(choice.measured) << " | " << percent(fresh) << (holds ? "" : " **over**")
             << " | " << number(bytes, 3) << " | " << number(choice.seconds, 2) << " |" << std::endl;
   return holds;
@@ -116,9 +109,9 @@ int run(const Asked& asked) {
   std::sort(recipes.begin(), recipes.end());
   std::string scratch = (std::filesystem::temp_directory_path() / "nephele_tolerances_XXXXXX").string();
   if (mkdtemp(scratch.data()) == nullptr) throw WorldError("no scratch folder");
-  std::cout
-      << "| sample | asked | voxel size | precision | octaves | measured | on fresh rays | bytes, of the "
-         "recipe's | seconds |\n|---|---|---|---|---|---|---|---|---|\n";
+  std::cout << "| sample | asked | voxel size | precision | octaves | step | measured | on fresh rays | "
+               "bytes, of the "
+               "recipe's | seconds |\n|---|---|---|---|---|---|---|---|---|---|\n";
   bool allHold = true;
   std::vector<Shares> shares(asked.tolerances.size());
   for (const std::string& recipe : recipes) {

@@ -8,8 +8,8 @@
 
 namespace nephele {
 
-/// Becomes file metadata: creator, up_axis, recipe_hash, seed, frame, fps, cutoff, and the medium where the
-/// recipe gives one (sigma_s, sigma_a per unit density per world unit, g).
+/// Becomes file metadata: creator, up_axis, recipe_hash, seed, frame, fps, cutoff, density_step, and the
+/// medium where the recipe gives one (sigma_s, sigma_a per unit density per world unit, g).
 struct Provenance {
   char upAxis = 'z';
   std::string recipeHash;  // hex; equal where the asset would bake to the same content by the same sources
@@ -20,6 +20,7 @@ struct Provenance {
   std::array<double, 3> sigmaA{};
   double g = 0.0;
   std::optional<double> fps, cutoff;  // of particles: what the block does not say of their bake
+  std::optional<double> densityStep;  // where there is one: stored densities are multiples of it
   std::string particles;  // the recipe's particle block as YAML; empty where a density made the grid
   std::string tolerance;  // what a tolerance chose, measured and left out; empty where the recipe has none
   std::optional<double> mass;  // Σ of stored densities · voxel volume, density units · world units³

@@ -27,6 +27,8 @@ openvdb::MetaMap metadataOf(const Provenance& provenance) {
     metadata.insertMeta("particles", openvdb::StringMetadata(provenance.particles));
   if (provenance.fps) metadata.insertMeta("fps", openvdb::DoubleMetadata(*provenance.fps));
   if (provenance.cutoff) metadata.insertMeta("cutoff", openvdb::DoubleMetadata(*provenance.cutoff));
+  if (provenance.densityStep)
+    metadata.insertMeta("density_step", openvdb::DoubleMetadata(*provenance.densityStep));
   if (!provenance.tolerance.empty())
     metadata.insertMeta("tolerance", openvdb::StringMetadata(provenance.tolerance));
   if (provenance.mass) metadata.insertMeta("mass", openvdb::DoubleMetadata(*provenance.mass));

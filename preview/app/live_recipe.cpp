@@ -67,6 +67,7 @@ std::optional<LiveSource> liveSourceOf(const BrickVolume& volume) {
   source.settings.upAxis = volume.upAxis == 'y' ? 1 : 2;
   source.settings.seed = static_cast<uint32_t>(static_cast<int64_t>(numberOf(volume, "seed", 0.0)));
   source.cutoff = numberOf(volume, "cutoff", source.cutoff);
+  source.densityStep = numberOf(volume, "density_step", source.densityStep);
   if (const std::string* half = find(volume, "is_saved_as_half_float"))
     source.half = *half == "true" || *half == "1";
   source.voxelSize = glm::length(glm::dvec3(volume.worldFromIndex[0]));
@@ -84,6 +85,7 @@ std::string recipeOf(const LiveSource& source, const ParticleSystem& system, con
   if (frames)
     text += "    frames: " + std::to_string(frames->begin) + "-" + std::to_string(frames->end - 1) + "\n";
   text += "    fps: " + shortest(source.settings.fps) + "\n    cutoff: " + shortest(source.cutoff) + "\n";
+  if (source.densityStep > 0.0) text += "    density_step: " + shortest(source.densityStep) + "\n";
   text += std::string("    precision: ") + (source.half ? "half" : "float") + "\n    particles:\n";
   constexpr size_t kUnderParticles = 6;
   text += indented(writeParticles(system), kUnderParticles);

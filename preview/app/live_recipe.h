@@ -17,6 +17,7 @@ struct LiveSource {
   std::string name;        // the asset's
   double voxelSize = 1.0;  // world units
   double cutoff = 0.001;
+  double densityStep = 0.0;  // 0: none
   bool half = true;
   bool framed = false;  // whether the file is a frame of a sequence
 };

@@ -12,6 +12,7 @@
 #include "bake/run.h"
 #include "bake/trial.h"
 #include "tests/scratch_folder.h"
+#include "volume/bricks.h"
 #include "volume/vdb_header.h"
 
 namespace nephele::test {
@@ -33,11 +34,7 @@ class ChoiceTest : public ::testing::Test {
   std::string folder() const { return scratch_.path(); }
 
   double freshError(const Pipeline& pipeline, const Choice& choice) const {
-    Asset finer = choice.asset;
-    finer.voxelSize *= 0.5;
-    finer.precision = Precision::single;
-    finer.mostOctaves = kAllOctaves;
-    return depthError(pipeline, finer, choice.asset, kChoiceRays, kOtherRays, folder());
+    return depthError(pipeline, finerThan(choice.asset), choice.asset, kChoiceRays, kOtherRays, folder());
   }
 
   ScratchFolder scratch_;
@@ -72,6 +69,37 @@ TEST_F(ChoiceTest, LeavesOutOctavesThatDoNotMatter) {
   const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
   EXPECT_LT(choice.asset.mostOctaves, 6);
   EXPECT_NE(choiceAsText(choice).find("octaves beyond"), std::string::npos) << choiceAsText(choice);
+}
+
+TEST_F(ChoiceTest, TakesTheCoarsestStepThatHolds) {
+  const Pipeline pipeline = recipe(kSphere, "tolerance: 10%");
+  const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
+  const double step = choice.asset.densityStep;
+  ASSERT_GT(step, 0.0);
+  EXPECT_NE(choiceAsText(choice).find(", density_step "), std::string::npos) << choiceAsText(choice);
+  for (const ChoiceTrial& trial : choice.trials)
+    EXPECT_TRUE(trial.densityStep <= step || trial.error > kChoiceShare * choice.asked) << trial.densityStep;
+  // Files become smaller by it, by nothing else.
+  const TrialBaker baker(pipeline, pipeline.assets[0], {std::nullopt}, folder());
+  Asset exact = choice.asset;
+  exact.densityStep = 0.0;
+  const TrialBake stepped = baker.bake(0, choice.asset, scratch_.file("stepped.trial")),
+                  plain = baker.bake(0, exact, scratch_.file("exact.trial"));
+  EXPECT_EQ(stepped.voxelsActive, plain.voxelsActive);
+  EXPECT_LT(stepped.fileBytes, plain.fileBytes);
+  const Pipeline without = recipe(kSphere, "tolerance: 10%\n    density_step: 0");
+  const Choice unstepped = chooseFor(without, without.assets[0], folder());
+  EXPECT_EQ(unstepped.asset.densityStep, 0.0);
+  EXPECT_EQ(unstepped.asset.voxelSize, choice.asset.voxelSize);
+}
+
+TEST_F(ChoiceTest, TheStepStandsInTheFile) {
+  const Pipeline pipeline = recipe(kSphere, "voxel_size: 0.1\n    density_step: 0.125");
+  BakeOptions options;
+  options.outFolder = folder();
+  options.quiet = true;
+  const std::string file = bakeAll(pipeline, options)[0].file;
+  EXPECT_EQ(loadBricks(file).metadata.at("density_step"), "0.125");
 }
 
 TEST_F(ChoiceTest, ALooserToleranceIsNeverDearer) {
@@ -165,6 +193,11 @@ TEST_F(ChoiceTest, AChartHasErrorsThatGrowWithTheVoxels) {
   EXPECT_GT(coarsest.depthRms, 2.0 * finest.depthRms);
   EXPECT_LT(coarsest.voxelsActive, finest.voxelsActive / 32);
   EXPECT_LT(coarsest.fileBytes, finest.fileBytes);
+  std::vector<uint64_t> stepped;
+  for (const CostPoint& point : chart.points)
+    if (point.sweep == "density step") stepped.push_back(point.fileBytes);
+  ASSERT_EQ(stepped.size(), 3u);
+  EXPECT_LT(stepped[2], stepped[0]);
   ASSERT_EQ(chart.fronts.size(), 6u);
   for (const CostFront& front : chart.fronts) EXPECT_FALSE(front.points.empty());
   writeCostChart(folder(), chart);

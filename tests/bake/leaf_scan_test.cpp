@@ -44,6 +44,41 @@ TEST(LeafScan, RoundsToHalfAsOpenVdbStoresIt) {
   }
 }
 
+TEST(LeafScan, RoundsToMultiplesOfAStepAndNothingToZero) {
+  for (const bool half : {false, true})
+    for (const float step : {0x1p-24f, 0x1p-6f, 0.25f, 0x1p15f})
+      for (uint32_t seed = 0; seed < 50; ++seed) {
+        const std::vector<float> given = assorted(seed);
+        std::vector<float> values = given, unstepped = given;
+        const LeafScan scan = scanLeaf({0.0f, kLargestHalf, half, step}, values.data());
+        const LeafScan plain = scanLeaf({0.0f, kLargestHalf, half}, unstepped.data());
+        for (size_t word = 0; word < 8; ++word) ASSERT_EQ(scan.mask[word], plain.mask[word]);
+        for (size_t n = 0; n < kValues; ++n) {
+          if (given[n] <= 0.0f) continue;
+          // A power of two below the step; halves have no finer unit than 2^-24.
+          double unit = std::min(double(step), std::exp2(std::floor(std::log2(double(given[n])))));
+          if (half) unit = std::max(unit, 0x1p-24);
+          double expected = std::nearbyint(double(given[n]) / unit) * unit;
+          if (expected > double(kLargestHalf)) expected -= unit;
+          if (half) expected = double(float(openvdb::math::half(float(expected))));
+          ASSERT_EQ(double(values[n]), double(float(expected))) << given[n] << " by " << step;
+        }
+      }
+}
+
+TEST(LeafScan, AStepRoundsTiesToEvenAndKeepsToTheLimit) {
+  const std::pair<float, float> cases[] = {{0.125f, 0.125f}, {0.375f, 0.5f},    {0.625f, 0.5f},
+                                           {0.626f, 0.75f},  {0.875f, 1.0f},    {0.18f, 0.125f},
+                                           {0.1875f, 0.25f}, {3000.1f, 3000.0f}};
+  for (const auto& [given, expected] : cases) {
+    std::vector<float> values(kValues, given);
+    scanLeaf({0.0f, kLargestHalf, true, 0.25f}, values.data());
+    EXPECT_EQ(values[0], expected) << given;
+  }
+  std::vector<float> values(kValues, kLargestHalf);
+  EXPECT_EQ(scanLeaf({0.0f, kLargestHalf, true, 0x1p15f}, values.data()).maximum, 0x1p15f);
+}
+
 TEST(LeafScan, CutsAtTheCutoffAndSumsWhatIsLeft) {
   std::vector<float> values(kValues, 0.25f);
   for (size_t n = 0; n < kValues; n += 2) values[n] = 0.5f + float(n) / 1024.0f;
@@ -76,10 +111,12 @@ TEST(LeafScan, SeesWhatCannotBeStored) {
 TEST(LeafScan, EveryTargetGivesEqualBits) {
   expectEqualBitsOnEveryTarget([] {
     std::vector<float> all;
-    for (const bool half : {false, true})
+    for (const LeafRules& rules :
+         {LeafRules{1e-4f, kLargestHalf, false}, LeafRules{1e-4f, kLargestHalf, true},
+          LeafRules{1e-4f, kLargestHalf, false, 0.25f}, LeafRules{1e-4f, kLargestHalf, true, 0x1p-9f}})
       for (uint32_t seed = 0; seed < 20; ++seed) {
         std::vector<float> values = assorted(seed);
-        const LeafScan scan = scanLeaf({1e-4f, kLargestHalf, half}, values.data());
+        const LeafScan scan = scanLeaf(rules, values.data());
         all.insert(all.end(), values.begin(), values.end());
         all.insert(all.end(), {float(scan.mass), scan.maximum, float(scan.active)});
         for (const uint64_t word : scan.mask) all.push_back(float(word % 16777213u));

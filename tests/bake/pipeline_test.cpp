@@ -64,6 +64,7 @@ TEST(Pipeline, ReadsAnAssetWithDefaults) {
   EXPECT_EQ(asset.name, "puff");
   EXPECT_EQ(asset.precision, Precision::half);
   EXPECT_DOUBLE_EQ(asset.cutoff, 0.001);
+  EXPECT_EQ(asset.densityStep, 0.0);
   EXPECT_EQ(asset.density->row->name, "sphere");
   EXPECT_DOUBLE_EQ(std::get<double>(asset.density->values.at("radius")), 2.0);
   EXPECT_DOUBLE_EQ(std::get<double>(asset.density->values.at("falloff")), 1.0);
@@ -155,6 +156,27 @@ TEST(Pipeline, RefusesWhatIsContradictoryOrNotBuilt) {
             std::string::npos);
   EXPECT_NE(onlyComplaint("assets: { a: { voxel_size: 1, density: 1, frames: 8-2 } }").find("A-B"),
             std::string::npos);
+}
+
+TEST(Pipeline, ADensityStepIsAPowerOfTwoOrNone) {
+  const auto with = [](const std::string& keys) {
+    return "assets: { a: { " + keys + ", density: sphere } }";
+  };
+  const Pipeline pipeline = load(with("voxel_size: 1, density_step: 0.0625"));
+  const Asset& asset = pipeline.assets.front();
+  EXPECT_EQ(asset.densityStep, 0.0625);
+  const Pipeline none = load(with("voxel_size: 1"));
+  EXPECT_NE(recipeHash(pipeline, asset), recipeHash(none, none.assets.front()));
+  EXPECT_TRUE(load(with("tolerance: 3%, density_step: 0")).assets.front().densityStepGiven);
+  const std::pair<const char*, const char*> cases[] = {
+      {"voxel_size: 1, density_step: 0.05",
+       "1:31: 'density_step' must be 0 or a power of two from 2^-24 to 2^15; for "
+       "example 0.03125"},
+      {"voxel_size: 1, density_step: 65536", "for example 32768"},
+      {"voxel_size: 1, density_step: -1", "'density_step' must be at least 0, found -1"},
+      {"tolerance: 3%, density_step: 0.5", "'tolerance' chooses 'density_step'"}};
+  for (const auto& [keys, sentence] : cases)
+    EXPECT_NE(onlyComplaint(with(keys)).find(sentence), std::string::npos) << onlyComplaint(with(keys));
 }
 
 TEST(Pipeline, ACycleIsAnErrorWithItsPath) {

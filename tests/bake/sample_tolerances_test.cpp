@@ -19,11 +19,8 @@ TEST_P(SampleTolerance, HoldsOnFreshRays) {
   Asset asset = pipeline.assets.front();
   asset.tolerance = tolerance;
   const Choice choice = chooseFor(pipeline, asset, scratch.path());
-  Asset finer = choice.asset;
-  finer.voxelSize *= 0.5;
-  finer.precision = Precision::single;
-  finer.mostOctaves = kAllOctaves;
-  const double fresh = depthError(pipeline, finer, choice.asset, kChoiceRays, kFreshSeed, scratch.path());
+  const double fresh =
+      depthError(pipeline, finerThan(choice.asset), choice.asset, kChoiceRays, kFreshSeed, scratch.path());
   EXPECT_LE(fresh, tolerance);
 }
 

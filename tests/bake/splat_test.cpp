@@ -208,6 +208,21 @@ TEST(Splat, LedgerAddsUp) {
   EXPECT_NEAR(cut.outsideBox / cut.given, 0.5, 0.1);
 }
 
+TEST(Splat, AStepRoundsDensitiesAndTheLedgerKnows) {
+  const Cloud cloud = randomCloud(3000, 30.0f, 1.5f, 6.0f);
+  SplatSettings settings = plain();
+  const Splatted exact = splat(cloud.particles(), settings);
+  settings.densityStep = 0x1p-10;
+  const Splatted stepped = splat(cloud.particles(), settings);
+  EXPECT_EQ(stepped.voxelsActive, exact.voxelsActive);
+  const double levels = stepped.maximum / settings.densityStep;
+  EXPECT_EQ(levels, std::round(levels));
+  EXPECT_NEAR(stepped.maximum, exact.maximum, 0.5 * settings.densityStep);
+  const SplatLedger l = stepped.ledger;
+  EXPECT_NE(l.lostToHalf, 0.0);
+  EXPECT_NEAR(l.splatted, l.stored + l.lostToCutoff + l.lostToHalf, 1e-12 * l.given);
+}
+
 TEST(Splat, ABoxIsTheActiveBoxOfEveryFrame) {
   SplatSettings settings = plain();
   settings.voxelSize = 0.5;

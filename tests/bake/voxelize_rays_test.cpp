@@ -22,6 +22,12 @@ FieldPtr product(FieldPtr a, FieldPtr b) {
 FieldPtr hardBox() { return makeField("box", {{"rounding", 0.0}, {"falloff", 0.0}}); }
 FieldPtr noisySphere() { return product(makeField("sphere"), makeField("fbm", {{"cell_size", 0.5}})); }
 
+VoxelizeSettings stepped(double voxelSize, double densityStep) {
+  VoxelizeSettings settings{voxelSize, 0.001, true};
+  settings.densityStep = densityStep;
+  return settings;
+}
+
 /// Chords of a box that holds the test's fields and of which they fill a good part.
 Chords chordsOf(uint64_t seed) { return randomChords(glm::dvec3(-1.0), glm::dvec3(1.0), kRays, seed); }
 
@@ -30,7 +36,7 @@ TEST(VoxelizeRays, SeeWhatTheGridHolds) {
   for (const FieldPtr& field : {hardBox(), noisySphere(), makeField("warp", {{"input", noisySphere()}})})
     for (const VoxelizeSettings& settings :
          {VoxelizeSettings{0.05, 0.0, false}, VoxelizeSettings{0.013, 0.01, true},
-          VoxelizeSettings{0.037, 0.2, false}}) {
+          VoxelizeSettings{0.037, 0.2, false}, stepped(0.02, 0.0625)}) {
       const std::vector<double> grid = depthsAlong(bricksOf(voxelize(*field, settings)), chords.lines);
       const RayDepths rays = depthsAlong(*field, settings, chords.lines);
       // Lattices that begin elsewhere, and points, differ in rounding, which the cutoff and half's steps may
@@ -57,6 +63,16 @@ TEST(VoxelizeRays, MeasureTheVolumeThatTheyFill) {
   const double radius = 0.5, volume = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
   // Half a voxel more all round; 2000 lines of which one in twelve meets it tell it to 7%.
   EXPECT_NEAR(chords.volumeOf(rays.lengthVaried), volume, 0.25 * volume);
+}
+
+TEST(VoxelizeRays, KnowTheLargestDensityThatTheyComeNear) {
+  const Chords chords = chordsOf(6);
+  for (const FieldPtr& field : {hardBox(), noisySphere()}) {
+    const VoxelizeSettings settings = stepped(0.05, 0.0);
+    const double maximum = depthsAlong(*field, settings, chords.lines).maximum;
+    EXPECT_LE(maximum, voxelize(*field, settings).maximum);
+    EXPECT_GT(maximum, 0.8 * voxelize(*field, settings).maximum);
+  }
 }
 
 TEST(VoxelizeRays, AreTheSameOnAnyNumberOfThreads) {

@@ -100,6 +100,8 @@ BAKE = [
     wrong("voxel_size: 0.1", "voxel_size: .nan", "pipeline.yaml:4:17: error: 'voxel_size'"),
     wrong("    voxel_size: 0.1\n", "", "error:", "voxel_size"),
     wrong("voxel_size: 0.1", "voxel_size: 0.1\n    tolerance: 1%", "pipeline.yaml:5:5: error:", "both 'voxel_size' and"),
+    wrong("voxel_size: 0.1", "voxel_size: 0.1\n    density_step: 0.1", "pipeline.yaml:5:5: error: 'density_step' must be 0 or a power",
+          "for example 0.0625"),
     wrong("radius: 1.0", "radius: -1.0", "pipeline.yaml:6:25: error: 'radius'", "must be greater than 0"),
     wrong("up_axis: z", "up_axis: x", "pipeline.yaml:1:10: error: 'up_axis' must be one of"),
     wrong("radius: 1.0, falloff: 0.5", "radius: wide, fallof: 0.5", "pipeline.yaml:6:25: error: 'radius'",

@@ -20,7 +20,8 @@ BrickVolume fileOf(const std::string& block) {
   volume.worldFromIndex = glm::dmat4(0.05);
   volume.worldFromIndex[3][3] = 1.0;
   volume.upAxis = 'y';
-  volume.metadata = {{"particles", block}, {"fps", "30"}, {"seed", "5"}, {"cutoff", "0.01"}, {"frame", "7"}};
+  volume.metadata = {{"particles", block},       {"fps", "30"}, {"seed", "5"}, {"cutoff", "0.01"},
+                     {"density_step", "0.0625"}, {"frame", "7"}};
   return volume;
 }
 
@@ -35,6 +36,7 @@ TEST(LiveRecipe, ReadsTheFilesMetadata) {
   EXPECT_EQ(source->settings.upAxis, 1);
   EXPECT_NEAR(source->voxelSize, 0.05, 1e-15);
   EXPECT_EQ(source->cutoff, 0.01);
+  EXPECT_EQ(source->densityStep, 0.0625);
   EXPECT_TRUE(source->framed);
   EXPECT_EQ(source->system.emitters.at(0).radius, 0.3);
   EXPECT_EQ(source->system.substeps, 3);
