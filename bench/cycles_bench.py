@@ -10,26 +10,17 @@ import json
 import math
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-BAKE, PREVIEW = ROOT / "build/nephele-bake", ROOT / "build/nephele-preview"
-RECIPE = ROOT / "bench/cycles_ball.yaml"
+from programs import BAKE, PREVIEW, RECIPE, ROOT, said
+
 NO_BLENDER = 77
 # As RECIPE's scene says; Cycles is told by a job of its own.
 JOB = {"camera": {"position": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1], "fov": 26},
        "medium": {"sigma_s": 6.4, "sigma_a": 0.0, "g": 0.3}, "environment": [0, 0, 0], "threads": 2,
        "suns": [{"to_light": [0.6, -0.4, 0.7], "irradiance": [3.1416] * 3}]}
-
-
-def said(command):
-    done = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"{command[0]}: exit {done.returncode}\n{done.stdout}{done.stderr}")
-    return done.stdout
 
 
 def cycles(folder, size, samples, bounces, seed):

@@ -13,15 +13,12 @@ import json
 import math
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-BAKE, PREVIEW = ROOT / "build/nephele-bake", ROOT / "build/nephele-preview"
-RECIPE = ROOT / "bench/cycles_ball.yaml"
+from programs import BAKE, PREVIEW, RECIPE, said, timed
+
 NO_VDB_RENDER = 77
 MORE_OF_OURS = 3
 VOXEL = 1 / 128  # as RECIPE says
@@ -32,15 +29,6 @@ WAYS = {"ours": {}}  # by what the scene's march says
 FINE = {"step": 0.25, "shadow_step": 0.5, "shadow_growth": 1.03, "light_cache": False, "level_pixels": 0, "step_pixels": 0}
 
 
-def said(command):
-    """Runs to the end; returns the seconds that it took and what it said."""
-    start = time.monotonic()
-    done = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"{command[0]}: exit {done.returncode}\n{done.stdout}{done.stderr}")
-    return time.monotonic() - start, done.stdout + done.stderr
-
-
 def listed(values):
     return ",".join(f"{value:.9g}" for value in values)
 
@@ -48,12 +36,12 @@ def listed(values):
 def theirs(folder, size, shadow_step):
     out = folder / f"theirs_{shadow_step}.exr"
     extinction = [SIGMA * VOXEL] * 3
-    seconds, words = said(["vdb_render", "-v", folder / "ball.vdb", out, "-res", f"{size}x{size}",
-                       "-translate", listed(CAMERA["position"]), "-lookat", listed(CAMERA["target"]),
-                       "-up", listed(CAMERA["up"]), "-fov", CAMERA["fov"],
-                       "-absorb", "0,0,0", "-scatter", listed(extinction), "-light", listed([*TO_LIGHT, 1, 1, 1]),
-                       "-gain", 0, "-cutoff", 1e-4, "-step", 1, "-shadowstep", shadow_step])
-    read, traced, _ = (float(part) for part in re.findall(r"completed in ([\d.e+-]+) sec", words))
+    seconds, *words = timed(["vdb_render", "-v", folder / "ball.vdb", out, "-res", f"{size}x{size}",
+                             "-translate", listed(CAMERA["position"]), "-lookat", listed(CAMERA["target"]),
+                             "-up", listed(CAMERA["up"]), "-fov", CAMERA["fov"],
+                             "-absorb", "0,0,0", "-scatter", listed(extinction), "-light", listed([*TO_LIGHT, 1, 1, 1]),
+                             "-gain", 0, "-cutoff", 1e-4, "-step", 1, "-shadowstep", shadow_step])
+    read, traced, _ = (float(part) for part in re.findall(r"completed in ([\d.e+-]+) sec", "".join(words)))
     return out, seconds, read + traced
 
 
@@ -62,13 +50,13 @@ def ours(folder, size, samples, name, march):
     # YAML holds JSON.
     scene.write_text(json.dumps({"camera": CAMERA, "medium": {"sigma_s": SIGMA, "g": 0}, "look": "physical", "march": march,
                                  "lights": [{"sun": {"to_light": TO_LIGHT, "irradiance": [IRRADIANCE] * 3}}]}))
-    seconds, _ = said([PREVIEW, folder / "ball.vdb", "--scene", scene, "--size", f"{size}x{size}", "--spp", samples,
-                       "--render", out, "--stats", stats])
+    seconds, *_ = timed([PREVIEW, folder / "ball.vdb", "--scene", scene, "--size", f"{size}x{size}", "--spp", samples,
+                         "--render", out, "--stats", stats])
     return out, seconds, json.loads(stats.read_text())
 
 
 def apart(picture, reference):
-    return json.loads(said([PREVIEW, "compare", picture, reference, "--json"])[1])
+    return json.loads(said([PREVIEW, "compare", picture, reference, "--json"]))
 
 
 def told(who, whole, pixels, error, peer=None):
