@@ -63,10 +63,12 @@ std::vector<double> depthsAlong(const BrickVolume& v, std::span<const Chord> cho
   return depths;
 }
 
-double DepthDifference::relative() const {
-  if (largest == 0.0) return 0.0;
-  return largestA > 0.0 ? largest / largestA : std::numeric_limits<double>::infinity();
+double relativeTo(double reference, double difference) {
+  if (difference == 0.0) return 0.0;
+  return reference > 0.0 ? difference / reference : std::numeric_limits<double>::infinity();
 }
+
+double DepthDifference::relative() const { return relativeTo(largestA, largest); }
 
 DepthDifference differenceOf(std::span<const double> a, std::span<const double> b) {
   NEPHELE_CHECK_EQ(a.size(), b.size());

@@ -34,6 +34,9 @@ Chords randomChords(const glm::dvec3& low, const glm::dvec3& high, uint64_t coun
 /// threads.
 std::vector<double> depthsAlong(const BrickVolume& bricks, std::span<const Chord> chords);
 
+/// A difference over what it is judged by: 0 where there is none, infinite where the reference alone is 0.
+double relativeTo(double reference, double difference);
+
 /// Of depths B against depths A along the same rays.
 struct DepthDifference {
   uint64_t rays = 0;

@@ -95,17 +95,12 @@ void growBox(const BrickVolume& v, dvec3& low, dvec3& high) {
   }
 }
 
-double relative(double difference, double to) {
-  if (difference == 0.0) return 0.0;
-  return to > 0.0 ? difference / to : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
-double GridDifference::relativeDensity() const { return relative(largest, maximumA); }
-double GridDifference::relativeRmse() const { return relative(rms, meanA); }
-double GridDifference::relativeDepth() const { return relative(largestDepth, largestDepthA); }
-double GridDifference::relativeVelocity() const { return relative(largestVelocity, largestSpeedA); }
+double GridDifference::relativeDensity() const { return relativeTo(maximumA, largest); }
+double GridDifference::relativeRmse() const { return relativeTo(meanA, rms); }
+double GridDifference::relativeDepth() const { return relativeTo(largestDepthA, largestDepth); }
+double GridDifference::relativeVelocity() const { return relativeTo(largestSpeedA, largestVelocity); }
 
 DepthDifference depthDifference(const BrickVolume& a, const BrickVolume& b, uint64_t rays, uint64_t seed) {
   dvec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
