@@ -196,8 +196,10 @@ std::optional<int> fittedCount(const BrickVolume& bricks) {
   return static_cast<int>(numbers[0]);
 }
 
+bool hasFittedFactors(const BrickVolume& bricks) { return bricks.metadata.contains(kFittedFactors[0]); }
+
 bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks, double elevation) {
-  if (octaves.factorsGiven || !bricks.metadata.contains(kFittedFactors[0])) return false;
+  if (octaves.factorsGiven || !hasFittedFactors(bricks)) return false;
   SunFactors fitted{};
   for (size_t i = 0; i < std::size(kFittedFactors); ++i) {
     const auto found = bricks.metadata.find(kFittedFactors[i]);
@@ -217,6 +219,13 @@ bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks, double eleva
   octaves.c = taken[2];
   if (const std::optional<int> count = fittedCount(bricks); count && !octaves.count) octaves.count = count;
   return true;
+}
+
+void followSun(Scene& scene, const Medium& medium, const BrickVolume& bricks, const glm::dvec3& up) {
+  if (lightModelOf(scene, medium).octaveCount == 0) return;
+  const std::optional<int> count = scene.octaves.count;
+  takeFittedFactors(scene.octaves, bricks, sunElevation(scene, up));
+  scene.octaves.count = count;
 }
 
 ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double aspect,

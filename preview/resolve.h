@@ -56,10 +56,17 @@ inline constexpr const char* kFittedCount = "octaves_count";
 /// may ask for.
 std::optional<int> fittedCount(const BrickVolume& bricks);
 
+/// Whether the file holds factors of octaves.
+bool hasFittedFactors(const BrickVolume& bricks);
+
 /// Octaves whose factors (and, with them, whose number) the scene leaves open take those that were fitted to
 /// the file for a sun at `elevation` (degrees, as sunElevation has it), where it holds them. Returns whether
 /// it does. Throws InputError where they are no factors in [0, 1].
 bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks, double elevation);
+
+/// The same for a sun that has moved: factors that the scene leaves open follow it, the number of octaves
+/// stays. A scene without octaves stays as it is.
+void followSun(Scene& scene, const Medium& medium, const BrickVolume& bricks, const glm::dvec3& up);
 
 /// Camera and medium of a scene, given or chosen; the file's up; the environment's picture, read. A camera
 /// without `up` takes the file's. Lights that follow up are turned, and stay so. Throws InputError for an

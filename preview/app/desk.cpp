@@ -123,19 +123,11 @@ void Desk::restart() {
     document_.chooseHeat(state_.settings.scene.emission.grid);
   if (width_ < 1 || height_ < 1) return;
   followLive();
-  followSun();
+  followSun(state_.settings.scene, state_.settings.medium, document_.volume(), state_.up);
   viewer_.setGoal(state_.goal);
   viewer_.restart(Side::edited, request(state_.settings));
   if (state_.kept) viewer_.restart(Side::kept, request(*state_.kept));
   if (known) writeStats();
-}
-
-void Desk::followSun() {
-  Scene& scene = state_.settings.scene;
-  if (lightModelOf(scene, state_.settings.medium).octaveCount == 0) return;
-  const std::optional<int> count = scene.octaves.count;  // adopt() alone takes the file's
-  takeFittedFactors(scene.octaves, document_.volume(), sunElevation(scene, state_.up));
-  scene.octaves.count = count;
 }
 
 std::array<Shown, kSideCount> Desk::shown() const {

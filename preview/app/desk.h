@@ -84,8 +84,6 @@ class Desk {
   /// Takes parameters and voxels over to live particles and their volume to the viewer. Where they cannot be,
   /// says so.
   void followLive();
-  /// Factors of octaves that were fitted to the file follow the sun.
-  void followSun();
   bool advanceLive(double seconds);
   void bakeThis();
   /// Looks at all of it, and at the stage.

@@ -203,7 +203,7 @@ void Desk::actOnFiles(Action action) {
 
 void Desk::saveTheScene() {
   try {
-    saveScene(state_.sceneFile, state_.settings, orbit_.camera());
+    saveScene(state_.sceneFile, state_.settings, orbit_.camera(), hasFittedFactors(document_.volume()));
     say("wrote " + std::filesystem::path(state_.sceneFile).filename().string());
   } catch (const std::runtime_error& error) {  // a folder that cannot be written must not end the session
     say(error.what());

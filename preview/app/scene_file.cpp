@@ -19,12 +19,13 @@ void refuseRecipe(const std::string& path) {
 
 }  // namespace
 
-void saveScene(const std::string& path, const Settings& settings, const Camera& camera) {
+void saveScene(const std::string& path, const Settings& settings, const Camera& camera, bool fitted) {
   refuseRecipe(path);
   Scene scene = settings.scene;
   scene.camera = camera;
   scene.cameraUpGiven = true;
   scene.medium = settings.medium;
+  scene.octaves.factorsGiven |= !fitted;
   writeText(path, writeScene(scene));
 }
 

@@ -133,20 +133,26 @@ TEST(SceneFile, ReadsBackWhatWasSaved) {
   settings.scene.march.stepVoxels = 0.75;
   Camera camera;
   camera.position = dvec3(5.0, 6.0, 7.0);
-  saveScene(path, settings, camera);
+  settings.scene.octaves = {5, 0.45, 0.57, 0.25};
+  saveScene(path, settings, camera, false);
   const Scene back = loadScene(path);
   EXPECT_EQ(back.medium->g, 0.25);
   EXPECT_EQ(back.medium->sigmaS, settings.medium.sigmaS);
   EXPECT_EQ(back.camera->position, camera.position);
   EXPECT_EQ(back.look, Look::report);
   EXPECT_EQ(back.march.stepVoxels, 0.75);
-  saveScene(path, settings, camera);  // over itself
+  EXPECT_EQ(back.octaves.a, 0.45);
+  EXPECT_EQ(back.octaves.b, 0.57);
+  EXPECT_EQ(back.octaves.c, 0.25);
+  saveScene(path, settings, camera, true);  // over itself
+  EXPECT_FALSE(loadScene(path).octaves.factorsGiven)
+      << "factors fitted to the file would no longer follow the sun";
 }
 
 TEST(SceneFile, LeavesARecipeAlone) {
   const ScratchFolder folder;
   const std::string path = folder.write("a.scene.yaml", "assets: {}\nscene: { look: physical }\n");
-  EXPECT_THROW(saveScene(path, {}, {}), InputError);
+  EXPECT_THROW(saveScene(path, {}, {}, false), InputError);
 }
 
 TEST(FramePace, CountsFramesOfTheLastRunAlone) {

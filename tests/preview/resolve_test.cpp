@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "base/error.h"
 
@@ -94,6 +95,70 @@ TEST(MediumChoice, SceneThenFileThenExposure) {
   EXPECT_EQ(ofFile.medium.g, -0.25);
   scene.medium = Medium{};
   EXPECT_EQ(chooseMedium(scene, bricks).source, MediumSource::scene);
+}
+
+/// A scene that leaves the octaves open, lit from a height in degrees, and a file with factors for three
+/// heights.
+Scene litAt(double elevation) {
+  Scene scene;
+  scene.look = Look::report;
+  Sun sun;
+  sun.toLight = {std::cos(glm::radians(elevation)), 0.0, std::sin(glm::radians(elevation))};
+  scene.lights = {sun};
+  return scene;
+}
+
+BrickVolume fittedVolume() {
+  BrickVolume bricks = smallVolume();
+  bricks.metadata = {{"up_axis", "z"},
+                     {"sigma_s", "1"},
+                     {"octaves_a", "[0.25, 0.5, 1]"},
+                     {"octaves_b", "[0.5, 0.5, 0.5]"},
+                     {"octaves_c", "[1, 1, 1]"},
+                     {"octaves_count", "6"}};
+  return bricks;
+}
+
+TEST(FittedFactors, FollowTheSunAndLeaveTheCount) {
+  const BrickVolume bricks = fittedVolume();
+  std::string sentence;
+  ViewedScene view = resolveScene(litAt(5.0), bricks, 1.0, sentence);
+  EXPECT_EQ(view.scene.octaves.a, 0.25);
+  EXPECT_EQ(view.scene.octaves.count, 6) << "the file's, where the scene leaves it open";
+  view.scene.octaves.count = 3;
+  view.scene.lights = litAt(60.0).lights;
+  followSun(view.scene, view.medium, bricks, view.up);
+  EXPECT_NEAR(view.scene.octaves.a, 1.0, 1e-12);
+  EXPECT_EQ(view.scene.octaves.count, 3);
+  view.scene.octaves.factorsGiven = true;
+  view.scene.lights = litAt(5.0).lights;
+  followSun(view.scene, view.medium, bricks, view.up);
+  EXPECT_NEAR(view.scene.octaves.a, 1.0, 1e-12) << "factors that are given do not follow";
+  view.scene.octaves = {};
+  view.scene.octaves.count = 0;
+  followSun(view.scene, view.medium, bricks, view.up);
+  EXPECT_EQ(view.scene.octaves.a, Octaves{}.a) << "there are none to follow";
+}
+
+TEST(FittedFactors, AreToldWithTheSunsHeight) {
+  const BrickVolume bricks = fittedVolume();
+  const auto told = [&](const Scene& scene) {
+    std::string sentence;
+    resolveScene(scene, bricks, 1.0, sentence);
+    return sentence;
+  };
+  EXPECT_NE(told(litAt(5.0)).find("as fitted to the file for a sun at 5 degrees: a 0.25, b 0.5, c 1"),
+            std::string::npos)
+      << told(litAt(5.0));
+  EXPECT_NE(told(litAt(80.0)).find("for a sun at 60 degrees (the scene's is at 80): a 1"), std::string::npos)
+      << told(litAt(80.0));
+  Scene dark = litAt(5.0);
+  dark.lights.clear();
+  dark.octaves.count = 2;
+  const std::string none = told(dark);
+  EXPECT_NE(none.find("for a sun at 25 degrees (the scene has none): a 0.5"), std::string::npos) << none;
+  EXPECT_NE(none.find("(fitted for 6 orders beyond the first, the scene asks for 2)"), std::string::npos)
+      << none;
 }
 
 TEST(MediumChoice, RefusesMetadataThatIsNoMedium) {
