@@ -76,8 +76,8 @@ void report(const FitResult& result) {
   for (size_t node = 0; node < result.factors.size(); ++node) {
     const OctaveFactors& factors = result.factors[node];
     char text[128];
-    std::snprintf(text, sizeof text, "sun at %.0f degrees: a %.3f, b %.3f, c %.3f\n", kFittedElevations[node],
-                  factors[0], factors[1], factors[2]);
+    std::snprintf(text, sizeof text, "sun at %.0f degrees: a %.3f, b %.3f, c %.3f, d %.3f\n",
+                  kFittedElevations[node], factors[0], factors[1], factors[2], factors[kOpenness]);
     std::cout << text;
   }
   const auto over = [](const char* name, const std::vector<FitView>& views, bool fitted) {

@@ -19,8 +19,8 @@ struct FitCommandOptions {
   bool quiet = false;
 };
 
-/// Fits, prints the factors and errors before and after, and writes octaves_a, octaves_b and octaves_c,
-/// each for three heights of the sun, and octaves_count into the metadata of each file. Throws InputError or
+/// Fits, prints the factors and errors before and after, and writes octaves_a, octaves_b, octaves_c and
+/// octaves_d, each for three heights of the sun, and octaves_count into the metadata of each file. Throws InputError or
 /// WorldError. Returns the exit code: kExitNo where views held back get worse, else 0.
 int fitCommand(const FitCommandOptions& options);
 

@@ -74,7 +74,7 @@ void writeRenderStats(const std::string& path, const RenderTotals& totals, const
                                {"seconds_shaders", method.secondsShaders},
                                {"look", nameOf(light.look)},
                                {"not_physical", unphysicalTerms(light)},
-                               {"white_furnace", furnaceValue(light.octaveCount, light.a, light.b)}};
+                               {"white_furnace", furnaceValue(light.octaveCount, light.a, light.b, light.d)}};
   if (totals.cost.volumeBytes > 0) {  // the reference uploads nothing and keeps no light
     stats["ms_upload"] = totals.cost.millisecondsUpload / frames;
     stats["ms_light_cache"] = (preparing - totals.cost.millisecondsUpload) / frames;

@@ -203,6 +203,7 @@ bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks, double eleva
   SunFactors fitted{};
   for (size_t i = 0; i < std::size(kFittedFactors); ++i) {
     const auto found = bricks.metadata.find(kFittedFactors[i]);
+    if (found == bricks.metadata.end() && i == kOpenness) continue;  // 0, as in files that know nothing of it
     std::vector<double> numbers =
         found == bricks.metadata.end() ? std::vector<double>{} : numbersIn(found->second);
     if (numbers.size() == 1) numbers.resize(fitted.size(), numbers.front());
@@ -217,6 +218,7 @@ bool takeFittedFactors(Octaves& octaves, const BrickVolume& bricks, double eleva
   octaves.a = taken[0];
   octaves.b = taken[1];
   octaves.c = taken[2];
+  octaves.d = taken[kOpenness];
   if (const std::optional<int> count = fittedCount(bricks); count && !octaves.count) octaves.count = count;
   return true;
 }
@@ -245,7 +247,7 @@ ViewedScene resolveScene(const Scene& scene, const BrickVolume& bricks, double a
     if (!hasSun) fitted << " (the scene has none)";
     if (used != elevation) fitted << " (the scene's is at " << std::round(elevation) << ')';
     fitted << ": a " << view.scene.octaves.a << ", b " << view.scene.octaves.b << ", c "
-           << view.scene.octaves.c;
+           << view.scene.octaves.c << ", d " << view.scene.octaves.d;
     const std::optional<int> count = fittedCount(bricks);
     if (count && count != view.scene.octaves.count)
       fitted << " (fitted for " << *count << " orders beyond the first, the scene asks for "
@@ -274,7 +276,7 @@ std::string describeLight(const ViewedScene& view) {
     if (!term.physical) unphysical += (unphysical.empty() ? "" : ", ") + std::string(term.name);
   }
   if (model.octaveCount > 0) {
-    const double furnace = furnaceValue(model.octaveCount, model.a, model.b);
+    const double furnace = furnaceValue(model.octaveCount, model.a, model.b, model.d);
     constexpr int kDigits = 3;
     out << " (" << model.octaveCount << " beyond the first; white furnace " << std::setprecision(kDigits)
         << furnace << (furnace > 1.0 ? ", ABOVE 1: they make light" : "") << ')';

@@ -45,9 +45,9 @@ glm::dvec3 turnedTo(const glm::dvec3& up, const glm::dvec3& direction);
 /// Turns lights that follow up to where `up` is; they stay so.
 void turnLights(Scene& scene, const glm::dvec3& up);
 
-/// Names of the factors of octaves that `nephele-preview fit` leaves in a file's metadata: a, b, c. Each is
-/// one number for all suns, or three, for suns at kFittedElevations.
-inline constexpr const char* kFittedFactors[] = {"octaves_a", "octaves_b", "octaves_c"};
+/// Names of the factors of octaves that `nephele-preview fit` leaves in a file's metadata: a, b, c, d. Each
+/// is one number for all suns, or three, for suns at kFittedElevations; without the last, d is 0.
+inline constexpr const char* kFittedFactors[] = {"octaves_a", "octaves_b", "octaves_c", "octaves_d"};
 
 /// Name of how many orders beyond the first they were fitted for.
 inline constexpr const char* kFittedCount = "octaves_count";

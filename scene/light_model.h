@@ -29,7 +29,7 @@ struct LightModel {
   double oSa = 0.0;  // 0 where powder is off
   LightTransmittance transmittance = LightTransmittance::marched;
   int octaveCount = 0;
-  double a = 0.5, b = 0.5, c = 0.5;
+  double a = 0.5, b = 0.5, c = 0.5, d = 0.0;
 };
 
 /// The medium is the one that is lit: the scene's, or the one chosen for it.
@@ -50,7 +50,8 @@ std::vector<LightTerm> termsOf(const LightModel& model);
 /// is scattered by the octaves' sum: Σ_m b^m ½ (1 − s ln(1 + 1/s)), s = a^m, m = 0 … count; exactly 1 would
 /// be right (white furnace [PBRT]), single scattering alone gives ½ (1 − ln 2) = 0.153, and above 1 the
 /// factors make light. Order m sees the sky through e^(−a^m τ/μ'), whose mean over directions is ½ E₂(a^m τ),
-/// and the eye through e^(−τ). count ≥ 0, a and b in [0, 1]; a = 0 gives the limits ½ b^m.
-double furnaceValue(int count, double a, double b);
+/// and the eye through e^(−τ). count ≥ 0, a, b and d in [0, 1]; a = 0 gives the limits ½ b^m. With d, order m
+/// is weighed by (1 − d ½ E₂(τ))^m as well: half of all directions lead out; summed over depths, within 1e-5.
+double furnaceValue(int count, double a, double b, double d = 0.0);
 
 }  // namespace nephele

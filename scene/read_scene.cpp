@@ -124,10 +124,11 @@ Octaves readOctaves(const yaml::Node& node, Diagnostics& out) {
   if (count && !(count->kind == yaml::Kind::scalar && count->scalar == "auto"))
     if (const auto read = yaml::readInteger(*count, "'count'", kOctaveCount, out))
       octaves.count = static_cast<int>(*read);
-  octaves.factorsGiven = reader.find("a") || reader.find("b") || reader.find("c");
+  octaves.factorsGiven = reader.find("a") || reader.find("b") || reader.find("c") || reader.find("d");
   octaves.a = reader.number("a", octaves.a, kUnit);
   octaves.b = reader.number("b", octaves.b, kUnit);
   octaves.c = reader.number("c", octaves.c, kUnit);
+  octaves.d = reader.number("d", octaves.d, kUnit);
   reader.finish();
   return octaves;
 }

@@ -65,10 +65,12 @@ enum class LightTransmittance { marched, chord };
 inline constexpr int kMostOctaveCount = 16;
 
 /// Orders of scattering beyond the first, kMostOctaveCount at most: order m uses a^m σ_t towards the light,
-/// b^m σ_s, c^m g. Factors in [0, 1]. Look: none in `physical`, kReportOctaves in `report`.
+/// (b (1 − d · openness))^m σ_s, c^m g, openness being the share of light that would leave the medium
+/// unscattered if it set out evenly to all sides. Factors in [0, 1]. Look: none in `physical`, kReportOctaves
+/// in `report`.
 struct Octaves {
   std::optional<int> count;  // nullopt (`auto` in files): as the look decides
-  double a = 0.5, b = 0.5, c = 0.5;
+  double a = 0.5, b = 0.5, c = 0.5, d = 0.0;
   bool factorsGiven = false;  // else a file's fitted ones are taken, where it holds some (preview/resolve.h)
   bool operator==(const Octaves&) const = default;
 };

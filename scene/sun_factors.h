@@ -3,13 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <glm/vec3.hpp>
 
 #include "scene/scene.h"
 
 namespace nephele {
 
-using OctaveFactors = std::array<double, 3>;  // a, b, c, each in [0, 1]
+using OctaveFactors = std::array<double, 4>;  // a, b, c, d, each in [0, 1]
+inline constexpr size_t kOpenness = 3;        // the place of d
 
 /// Heights of the sun that factors are fitted at: degrees above the horizon, or below it.
 inline constexpr std::array<double, 3> kFittedElevations{5.0, 25.0, 60.0};

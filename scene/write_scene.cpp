@@ -76,7 +76,8 @@ std::string quoted(const std::string& text) {
 /// Nothing where a file's fitted factors may stand in for them: those follow the sun.
 std::string factorsOf(const Octaves& octaves) {
   if (!octaves.factorsGiven) return {};
-  return ", a: " + shortest(octaves.a) + ", b: " + shortest(octaves.b) + ", c: " + shortest(octaves.c);
+  return ", a: " + shortest(octaves.a) + ", b: " + shortest(octaves.b) + ", c: " + shortest(octaves.c) +
+         ", d: " + shortest(octaves.d);
 }
 
 std::string termsOf(const Scene& scene) {
@@ -88,7 +89,10 @@ std::string termsOf(const Scene& scene) {
          ", blend: " + shortest(silver.blend) + " } }\npowder: { on: " + textOf(scene.powder.on) +
          ", o_sa: " + shortest(scene.powder.oSa) +
          " }\nlight_transmittance: " + nameOf(scene.lightTransmittance) +
-         "\n# Orders of scattering beyond the first, and their factors.\noctaves: { count: " +
+         "\n# Orders of scattering beyond the first. Order m sees a^m of the extinction towards the light "
+         "and c^m of g, "
+         "and weighs\n# (b (1 - d openness))^m: openness is the share of light that leaves the cloud "
+         "unscattered.\noctaves: { count: " +
          (scene.octaves.count ? std::to_string(*scene.octaves.count) : "auto") + factorsOf(scene.octaves) +
          " }\n# temperature_scale: kelvin per unit of the grid.\nemission: { on: " + textOf(emission.on) +
          ", scale: " + shortest(emission.scale) +

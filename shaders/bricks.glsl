@@ -3,7 +3,7 @@ layout(binding = 0) uniform sampler3D atlas;       // bricks of 9³ samples, or 
 layout(binding = 1) uniform usampler2D brickIndex; // words of volume/brick_layout.h, x fastest, in rows of the texture's width
 layout(binding = 2) uniform usampler2D blockIndex; // of the light cache's blocks, likewise
 layout(binding = 3) uniform sampler3D columnCache;
-layout(binding = 5) uniform sampler3D skyCache;    // two halves along z
+layout(binding = 5) uniform sampler3D skyCache;    // parts beside each other along z
 
 // Whether bricks are of several levels.
 #ifndef NPH_LEVELS
@@ -89,5 +89,5 @@ float brickSample(uvec2 word, ivec3 place) {
 float cachedColumn(vec3 texel) { return cacheFetch(columnCache, texel).r; }
 
 vec4 cachedSky(int part, vec3 texel) {
-  return cacheFetch(skyCache, texel + vec3(0.0, 0.0, part * (textureSize(skyCache, 0).z / 2)));
+  return cacheFetch(skyCache, texel + vec3(0.0, 0.0, part * (textureSize(skyCache, 0).z / max(params.skySize.z, 1))));
 }

@@ -23,6 +23,7 @@ layout(location = 1) uniform int light;  // −1: the sky
 
 #define NPH_CACHED false  // nothing is scattered here
 #define NPH_SKY 0
+#define NPH_OPEN (params.skySize.z == kOpenParts)
 #define NPH_GREY false
 #define NPH_MAP false  // marched for
 #define NPH_SHOWN_SKY false
@@ -58,9 +59,12 @@ void main() {
   if (light < 0) {
     vec4 sky0;
     vec4 sky1;
-    skyToCache(position, skyTurn(block, local, samples), sky0, sky1, cost);
+    vec4 open;
+    skyToCache(position, skyTurn(block, local, samples), sky0, sky1, open, cost);
+    ivec3 part = ivec3(0, 0, imageSize(skyImage).z / params.skySize.z);
     imageStore(skyImage, texel, sky0);
-    imageStore(skyImage, texel + ivec3(0, 0, imageSize(skyImage).z / 2), sky1);
+    imageStore(skyImage, texel + part, sky1);
+    if (NPH_OPEN) imageStore(skyImage, texel + 2 * part, open);
   } else {
     imageStore(columns, texel + ivec3(0, 0, light * params.cacheShape.z), vec4(columnToCache(light, position, cost)));
   }

@@ -141,7 +141,7 @@ bool powderWidgets(Powder& powder, const LightModel& model) {
 }
 
 void furnaceText(const LightModel& model) {
-  const double furnace = furnaceValue(model.octaveCount, model.a, model.b);
+  const double furnace = furnaceValue(model.octaveCount, model.a, model.b, model.d);
   const std::array<char, 64> text = [&] {
     std::array<char, 64> line{};  // "white furnace 1.159: makes light"
     std::snprintf(line.data(), line.size(), "white furnace %.3f%s", furnace,
@@ -169,6 +169,7 @@ bool octaveWidgets(Octaves& octaves, const LightModel& model) {
   bool factors = widgets::slider("a extinction", octaves.a, 0.0, 1.0, "%.2f");
   factors |= widgets::slider("b scattering", octaves.b, 0.0, 1.0, "%.2f");
   factors |= widgets::slider("c asymmetry", octaves.c, 0.0, 1.0, "%.2f");
+  factors |= widgets::slider("d openness", octaves.d, 0.0, 1.0, "%.2f");
   octaves.factorsGiven |= factors;
   furnaceText(model);
   return changed || factors;

@@ -131,8 +131,10 @@ void setWalk(shared::MarchParameters& p, const MarchSettings& march, const Index
 /// What the light cache holds. `counted`: see voxelsCounted.
 void setCache(shared::MarchParameters& p, const MarchSettings& march, const BrickVolume& bricks,
               const IndexFrame& frame, double counted) {
+  const bool open = p.octaves.w > 0.0f && p.counts.y > 0;  // how open a place is, is asked of nothing else
   // The chord costs nothing to begin with.
-  if (!march.lightCache || bricks.empty() || p.chordRadii.w > 0.0f) return;
+  const bool lights = march.lightCache && p.chordRadii.w == 0.0f;
+  if (bricks.empty() || !(lights || open)) return;
   // By powers of two: between them a camera that moves needs no other cache.
   constexpr double kRounding = 1e-9;
   const double wider = std::exp2(std::floor(std::log2(counted) + kRounding));
@@ -155,7 +157,7 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   // mean.
   constexpr float kMixedBy = 0.5f;
   const bool good = wider * depth <= march.cacheDepth;
-  if (good || march.alwaysCached)
+  if (lights && (good || march.alwaysCached))
     p.cache = vec4(good ? shared::kColumnsInHalves : shared::kColumnsInBytes, kMixedBy * sigmaMax,
                    static_cast<float>(march.cacheNearVoxels),
                    isThin ? 0.0f : static_cast<float>(march.cacheNearSteps));
@@ -163,8 +165,10 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   p.cacheSteps = vec4(static_cast<float>(0.5 * cell), kGrowth, static_cast<float>(0.5 * skyCell), kSkyGrowth);
   // A picture's small suns fall between the few directions that are kept.
   const int kind = static_cast<int>(p.skyUp.w);
-  const bool sky = kind == shared::kSkyConstant || kind == shared::kSkyRamp;
-  p.cacheShape = glm::ivec4(samples(cell), sky ? samples(skyCell) : 0, 0, 0);
+  const bool sky = lights && (kind == shared::kSkyConstant || kind == shared::kSkyRamp);
+  p.skySize.z = open ? shared::kOpenParts : sky ? shared::kSkyParts : 0;
+  p.skySize.w = sky ? 1 : 0;
+  p.cacheShape = glm::ivec4(samples(cell), sky || open ? samples(skyCell) : 0, 0, 0);
 }
 
 }  // namespace

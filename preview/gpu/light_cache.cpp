@@ -20,7 +20,6 @@ constexpr GLuint kBlocksBinding = 1, kCostBinding = 2, kColumnsImage = 0, kSkyIm
 constexpr GLint kFirstBlockLocation = 0, kLightLocation = 1;
 constexpr int kGroupSize = 32;
 constexpr int kSky = -1;
-constexpr int kSkyHalves = 2;  // even light and its slope, beside each other
 constexpr double kPieceSeconds = 0.02;
 constexpr uint32_t kFirstPieceBlocks = 64;
 
@@ -47,7 +46,8 @@ bool same(const T& a, const T& b) {
 }
 
 bool sameShape(const MarchParameters& a, const MarchParameters& b) {
-  return same(a.cacheShape, b.cacheShape) && a.counts.x == b.counts.x && a.blockCount.w == b.blockCount.w;
+  return same(a.cacheShape, b.cacheShape) && a.skySize.z == b.skySize.z && a.counts.x == b.counts.x &&
+         a.blockCount.w == b.blockCount.w;
 }
 
 bool sameColumns(const MarchParameters& a, const MarchParameters& b, size_t light) {
@@ -57,7 +57,8 @@ bool sameColumns(const MarchParameters& a, const MarchParameters& b, size_t ligh
          same(a.cache.y, b.cache.y);
 }
 
-/// Everything but the camera, the lights, the view's steps, the seed and the stage.
+/// Everything but the camera, the lights, the view's steps, the seed and the stage; without a sky, openness
+/// alone is kept, which knows no orders.
 bool sameSky(MarchParameters a, MarchParameters b) {
   for (MarchParameters* p : {&a, &b}) {
     std::memset(static_cast<void*>(p), 0, offsetof(MarchParameters, worldFromIndexX));
@@ -67,6 +68,9 @@ bool sameSky(MarchParameters a, MarchParameters b) {
     p->shadow = glm::vec4(0.0f, 0.0f, 0.0f, p->shadow.w);
     p->walk = p->cache = glm::vec4(0.0f);
     p->counts.x = p->counts.w = p->brickCount.w = 0;
+    if (static_cast<int>(p->skyUp.w) != shared::kSkyNone) continue;
+    p->octaves = p->phase = p->skyOpen = glm::vec4(0.0f);
+    p->counts.y = 0;
   }
   return same(a, b);
 }
@@ -101,7 +105,8 @@ uint64_t LightCache::blockBytes(Filter filter, const MarchParameters& parameters
                                ? cube(parameters.cacheShape.x) * static_cast<uint64_t>(parameters.counts.x)
                                : 0;
   return kIndexBytes + columnFormat(floats, parameters.cache.x).bytes * columns +
-         kSkyHalves * skyFormat(floats).bytes * cube(parameters.cacheShape.y);
+         skyFormat(floats).bytes * cube(parameters.cacheShape.y) *
+             static_cast<uint64_t>(parameters.skySize.z);
 }
 
 void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameters) {
@@ -132,7 +137,8 @@ void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameter
   columns_ = make(columns ? parameters.cacheShape.x : kUnused, columns ? parameters.counts.x : 1,
                   columnFormat(floats_, columnKind_), GL_RED);
   const bool sky = parameters.cacheShape.y > 0;
-  sky_ = make(sky ? parameters.cacheShape.y : kUnused, kSkyHalves, skyFormat(floats_), GL_RGBA);
+  sky_ = make(sky ? parameters.cacheShape.y : kUnused, std::max(parameters.skySize.z, 1), skyFormat(floats_),
+              GL_RGBA);
   checkGl("making the light cache");
 }
 

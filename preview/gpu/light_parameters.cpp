@@ -147,7 +147,7 @@ void setLightParameters(shared::MarchParameters& p, const ViewedScene& view, con
   p.phase = row(dvec3(light.phase.first, light.phase.second, light.phase.share));
   p.powder = row(dvec3(light.oSa, bricks.maximum > 0.0 ? 1.0 / bricks.maximum : 0.0, 0.0));
   p.height = heightRow(bricks, frame, view.up);
-  p.octaves = row(dvec3(light.a, light.b, light.c));
+  p.octaves = row(dvec3(light.a, light.b, light.c), light.d);
   p.counts.y = light.octaveCount;
   setChord(p, bricks, frame, light.transmittance);
   setEnvironment(p, view);

@@ -22,7 +22,7 @@ constexpr int kMethodCube = static_cast<int>(MarchKind::cube), kMethodNothing = 
 /// What these parameters do not need is left out, since some drivers run the branches that no pixel takes.
 std::vector<std::string> definesFor(Filter filter, MarchWrites writes, int method,
                                     const shared::MarchParameters& p) {
-  const int sky = p.skyUp.w == 0.0f ? 0 : p.cacheShape.y > 0 ? 1 : 2;
+  const int sky = p.skyUp.w == 0.0f ? 0 : p.skySize.w != 0 ? 1 : 2;
   const auto flag = [](const char* name, bool on) { return std::string(name) + (on ? " true" : " false"); };
   bool points = false;
   for (int i = 0; i < p.counts.x; ++i)
@@ -43,7 +43,8 @@ std::vector<std::string> definesFor(Filter filter, MarchWrites writes, int metho
           flag("NPH_SHOWN_SKY", p.skyForward.w > 0.0f),
           p.stage.x > 0.0f ? "NPH_STAGE 1" : "NPH_STAGE 0",
           p.emission.x > 0.0f ? "NPH_HEAT 1" : "NPH_HEAT 0",
-          "NPH_SKY " + std::to_string(sky)};
+          "NPH_SKY " + std::to_string(sky),
+          flag("NPH_OPEN", p.skySize.z == shared::kOpenParts)};
 }
 
 /// Whether the way from the index to the world turns right hands into left ones.

@@ -5,77 +5,25 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "preview/measure/fit_stations.h"
 #include "preview/measure/least_point.h"
 #include "preview/measure/truth_ladder.h"
 
 namespace nephele {
 namespace {
 
-using glm::dvec3;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr unsigned kTruthSeed = 0x4669u;
-constexpr double kIrradiance = 3.0;
-
-/// Where camera and sun stand about the subject, degrees: azimuths, and elevations above the ground.
-struct Station {
-  double camera, cameraUp, sun, sunUp;
-  bool fitted;
-};
-
-constexpr double kLow = kFittedElevations[0], kMiddle = kFittedElevations[1], kHigh = kFittedElevations[2];
-
-/// From all sides; at each height of the sun it stands behind the camera, to one side, and behind the cloud.
-/// What is held back shares no camera with what is fitted to, and no sun.
-constexpr Station kStations[] = {
-    {0, -8, 15, kLow, true},      {80, 15, 160, kLow, true},    {170, 0, 35, kLow, true},
-    {250, 5, 70, kLow, true},     {45, 10, 65, kMiddle, true},  {120, -5, 210, kMiddle, true},
-    {200, 20, 75, kMiddle, true}, {310, 0, 140, kMiddle, true}, {60, 0, 90, kHigh, true},
-    {155, 25, 75, kHigh, true},   {230, -8, 5, kHigh, true},    {340, 8, 165, kHigh, true},
-    {30, 5, 10, 30, false},       {150, 20, 270, 55, false},    {210, -10, 50, 20, false},
-    {270, 0, 330, 5, false},      {100, 12, 55, 75, false},     {330, 25, 180, 12, false},
-    {10, -6, 110, 40, false},     {75, 30, 235, 3, false}};
-
-/// Unit; azimuth 0 looks from where the view's camera stands, at elevation 0.
-dvec3 directionAt(const ViewedScene& view, double azimuth, double elevation) {
-  const dvec3 up = glm::normalize(view.up);
-  dvec3 towards = view.camera.position - view.camera.target;
-  towards = glm::normalize(towards - glm::dot(towards, up) * up);
-  const dvec3 side = glm::cross(up, towards);
-  const dvec3 flat = std::cos(azimuth * kDegree) * towards + std::sin(azimuth * kDegree) * side;
-  return std::cos(elevation * kDegree) * flat + std::sin(elevation * kDegree) * up;
-}
-
-ViewedScene viewAt(const ViewedScene& given, const Station& station) {
-  ViewedScene view = given;
-  const double distance = glm::length(given.camera.position - given.camera.target);
-  view.camera.position =
-      given.camera.target + distance * directionAt(given, station.camera, station.cameraUp);
-  view.camera.up = given.up;
-  Scene& scene = view.scene;
-  scene.lights = {
-      Sun{directionAt(given, station.sun, station.sunUp), {kIrradiance, kIrradiance, kIrradiance}}};
-  scene.environment = Environment{};
-  scene.look = Look::physical;
-  scene.powder.on = false;
-  scene.lightTransmittance = LightTransmittance::marched;
-  scene.march.lightCache = false;  // each view has another sun
-  scene.march.levelPixels = scene.march.stepPixels =
-      0.0;  // the small pictures stand for large ones, which resolve every voxel
-  return view;
-}
 
 void setFactors(ViewedScene& view, const OctaveFactors& factors, int count) {
   view.scene.octaves.count = count;
   view.scene.octaves.a = factors[0];
   view.scene.octaves.b = factors[1];
   view.scene.octaves.c = factors[2];
+  view.scene.octaves.d = factors[kOpenness];
 }
 
 /// The fit at work.
@@ -85,15 +33,15 @@ class Fit {
       : march_(march), truth_(truth), subjects_(std::move(subjects)), options_(options) {}
 
   void addViews(size_t checksFrom) {
-    Progress progress("tracing truth", subjects_.size() * std::size(kStations), options_.quiet);
+    Progress progress("tracing truth", subjects_.size() * fitStations().size(), options_.quiet);
     for (size_t s = 0; s < subjects_.size(); ++s) {
       truth_.setVolume(*subjects_[s].bricks);
-      for (const Station& station : kStations) {
+      for (const FitStation& station : fitStations()) {
         FitView view{s,
                      subjects_[s].name,
                      station.fitted && s < checksFrom,
                      station.sunUp,
-                     viewAt(subjects_[s].view, station),
+                     viewFrom(subjects_[s].view, station),
                      {},
                      {},
                      {},
@@ -124,7 +72,7 @@ class Fit {
 
   /// The squared errors of each view of the subjects before `checksFrom`, for any factors.
   std::vector<OctaveForm> forms(size_t checksFrom) {
-    Progress progress("orders", checksFrom * std::size(kStations), options_.quiet);
+    Progress progress("orders", checksFrom * fitStations().size(), options_.quiet);
     std::vector<OctaveForm> each;
     for (const FitView& view : views) {
       if (view.subject >= checksFrom) break;  // they come last
@@ -183,11 +131,12 @@ FittedForms sumOf(const std::vector<FitView>& views, const std::vector<OctaveFor
   return sum;
 }
 
+constexpr double kTolerance = 1e-3;
+constexpr size_t kMostTries = 400;
+
 OctaveFactors leastFactors(const std::function<double(const OctaveFactors&)>& cost) {
-  constexpr int kSide = 7;
-  constexpr double kTolerance = 1e-4;
-  constexpr size_t kMost = 400;
-  return leastOfCube(cost, kSide, kTolerance, kMost);
+  constexpr int kSide = 5;
+  return leastOfCube(cost, kSide, kTolerance, kMostTries);
 }
 
 struct Fitted {
@@ -204,11 +153,12 @@ Fitted fittedTo(const FittedForms& forms, int count) {
       leastFactors([&](const OctaveFactors& factors) { return forms.all.at(factors, count); });
   Fitted fitted{{}, count, 0.0};
   for (size_t node = 0; node < fitted.factors.size(); ++node) {
-    fitted.factors[node] = leastFactors([&](const OctaveFactors& factors) {
+    const auto cost = [&](const OctaveFactors& factors) {
       double apart = 0.0;
       for (size_t i = 0; i < all.size(); ++i) apart += (factors[i] - all[i]) * (factors[i] - all[i]);
       return forms.at[node].at(factors, count) + kTie * forms.views[node] * apart;
-    });
+    };
+    fitted.factors[node] = leastOf(cost, all, kTolerance, kMostTries);
     fitted.square += forms.at[node].at(fitted.factors[node], count);
   }
   return fitted;

@@ -1,5 +1,5 @@
-// The octaves' factors a, b, c fitted to all orders of scattering by least squares, for low, middle and high
-// suns. Depends on preview/method.h, scene and preview/measure alone.
+// The octaves' factors a, b, c, d fitted to all orders of scattering by least squares, for low, middle and
+// high suns. Depends on preview/method.h, scene and preview/measure alone.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace nephele {
 
-inline constexpr OctaveFactors kUnfittedFactors{0.5, 0.5, 0.5};
+inline constexpr OctaveFactors kUnfittedFactors{0.5, 0.5, 0.5, 0.0};
 
 /// One volume, and a view of it to turn cameras and suns about: its lights are replaced by one sun, its
 /// environment by none.

@@ -39,7 +39,8 @@ UnitPoint leastOf(const std::function<double(const UnitPoint&)>& cost, const Uni
     Corner& worst = simplex.back();
     UnitPoint middle{};
     for (size_t i = 0; i + 1 < simplex.size(); ++i)
-      for (size_t axis = 0; axis < middle.size(); ++axis) middle[axis] += simplex[i].at[axis] / 3.0;
+      for (size_t axis = 0; axis < middle.size(); ++axis)
+        middle[axis] += simplex[i].at[axis] / static_cast<double>(simplex.size() - 1);
     // From the worst corner through the middle of the others: 1 is its mirror image, −½ half-way back.
     const auto through = [&](double times) {
       UnitPoint at{};
@@ -74,12 +75,15 @@ UnitPoint leastOfCube(const std::function<double(const UnitPoint&)>& cost, int s
   using Found = std::pair<double, UnitPoint>;
   std::vector<Found> lattice;
   const auto place = [side](int i) { return static_cast<double>(i) / (side - 1); };
-  for (int i = 0; i < side; ++i)
-    for (int j = 0; j < side; ++j)
-      for (int k = 0; k < side; ++k) {
-        const UnitPoint at{place(i), place(j), place(k)};
-        lattice.emplace_back(cost(at), at);
-      }
+  std::array<int, std::tuple_size_v<UnitPoint>> digits{};
+  for (bool more = true; more;) {
+    UnitPoint at{};
+    std::transform(digits.begin(), digits.end(), at.begin(), place);
+    lattice.emplace_back(cost(at), at);
+    size_t axis = 0;
+    while (axis < digits.size() && ++digits[axis] == side) digits[axis++] = 0;
+    more = axis < digits.size();
+  }
   std::sort(lattice.begin(), lattice.end());
   constexpr size_t kStarts = 3;
   Found best = lattice.front();

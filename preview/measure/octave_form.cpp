@@ -16,7 +16,9 @@ namespace {
 constexpr int kHalvings = 12;
 constexpr int kShares = kHalvings + 2;  // and 0
 constexpr int kLobes = 6;
-constexpr size_t kNodes = size_t{kShares} * kLobes;
+constexpr int kDoublings = 4;
+constexpr int kClosed = kDoublings + 2;  // powers 0, 1, 2, 4, 8 and 16 of what an open place leaves
+constexpr size_t kNodes = size_t{kShares} * kLobes * kClosed;
 constexpr int kCubic = 4;  // points of a cubic
 constexpr size_t kChannels = 3;
 
@@ -24,6 +26,8 @@ double shareAt(int node) { return node <= kHalvings ? std::exp2(-node) : 0.0; }
 
 /// Chebyshev–Lobatto, from 0 to 1.
 double lobeAt(int node) { return 0.5 - 0.5 * std::cos(std::numbers::pi * node / (kLobes - 1)); }
+
+size_t nodeOf(size_t share, size_t lobe, size_t closed) { return (share * kLobes + lobe) * kClosed + closed; }
 
 /// Lagrange's weights at `x` of `count` nodes.
 template <class Node>
@@ -57,8 +61,34 @@ std::array<double, kLobes> lobeWeights(double share) {
   return weights;
 }
 
+/// Adds the power `power` of what lies between 0 and 1: powers fall as light does through columns, so they
+/// are interpolated alike.
+void addPower(int power, double weight, std::array<double, kClosed>& weights) {
+  if (power == 0) {
+    weights[0] += weight;
+    return;
+  }
+  const double place = std::log2(power);
+  const int first = std::clamp(static_cast<int>(place) - 1, 0, kDoublings + 1 - kCubic);
+  std::array<double, kClosed> cubic{};
+  addLagrange(
+      place, first, kCubic, [](int node) { return static_cast<double>(node); }, cubic.data() + 1);
+  for (size_t i = 0; i < cubic.size(); ++i) weights[i] += weight * cubic[i];
+}
+
+/// (1 − d openness)^order = ((1 − d) + d (1 − openness))^order by powers of 1 − openness.
+std::array<double, kClosed> closedWeights(double d, int order) {
+  std::array<double, kClosed> weights{};
+  double choices = 1.0;
+  for (int power = 0; power <= order; ++power) {
+    addPower(power, choices * std::pow(d, power) * std::pow(1.0 - d, order - power), weights);
+    choices = choices * (order - power) / (power + 1);
+  }
+  return weights;
+}
+
 /// Radiance of one pixel and channel at every node: light through each share of the extinction, scattered
-/// by each lobe.
+/// by each lobe, times each power of 1 − openness.
 using AtNodes = std::array<double, kNodes>;
 
 /// Pictures of one order: what a second order of given factors adds to the first.
@@ -71,8 +101,13 @@ class Orders {
     first_ = march_.render(view_, request_, cost);
     view_.scene.octaves.count = 1;
     view_.scene.octaves.b = 1.0;
+    view_.scene.octaves.d = 0.0;
     for (int node = 0; node < kShares; ++node) even_.push_back(drawn(shareAt(node), 0.0));
     for (int node = 0; node < kLobes; ++node) unshaded_.push_back(drawn(0.0, lobeAt(node)));
+    view_.scene.octaves.d = 1.0;
+    for (const int share : kClosedShares)
+      for (int power = 1; power <= kMostPowerDrawn; power *= 2)
+        closed_.push_back(drawnPower(shareAt(share), power));
   }
 
   const Picture& first() const { return first_; }
@@ -84,15 +119,67 @@ class Orders {
     AtNodes nodes{};
     const double reached = added(unshaded_.front());  // by the even lobe, c = 0
     if (!(reached > 0.0)) return nodes;
-    for (int lobe = 0; lobe < kLobes; ++lobe) {
-      const double turned = added(unshaded_[static_cast<size_t>(lobe)]) / reached;
-      for (int share = 0; share < kShares; ++share)
-        nodes[static_cast<size_t>(share * kLobes + lobe)] = turned * added(even_[static_cast<size_t>(share)]);
+    std::array<double, kShares> even{};
+    for (size_t share = 0; share < even.size(); ++share) even[share] = added(even_[share]);
+    const auto left = leftAt(channel, pixel, even, reached);
+    for (size_t lobe = 0; lobe < kLobes; ++lobe) {
+      const double turned = added(unshaded_[lobe]) / reached;
+      for (size_t share = 0; share < even.size(); ++share)
+        for (size_t closed = 0; closed < kClosed; ++closed)
+          nodes[nodeOf(share, lobe, closed)] = turned * even[share] * left[share][closed];
     }
     return nodes;
   }
 
  private:
+  // Shares at which powers of 1 − openness are drawn; between them they leave of light what is mixed of both.
+  static constexpr int kClosedShares[] = {0, 2, 4, 8, kShares - 1};
+  static constexpr int kMostPowerDrawn = 8;
+  static constexpr size_t kPowersDrawn = 4;  // 1, 2, 4, 8
+
+  /// What each power of 1 − openness leaves of the light through each share.
+  std::array<std::array<double, kClosed>, kShares> leftAt(size_t channel, size_t pixel,
+                                                          const std::array<double, kShares>& even,
+                                                          double reached) const {
+    // Of light that hardly comes through, shares are rounding.
+    constexpr double kLeastLight = 1e-6;
+    const auto drawnAt = [&](size_t at) {
+      std::array<double, kClosed> left{};
+      left[0] = 1.0;
+      const double whole = std::max(even[static_cast<size_t>(kClosedShares[at])], kLeastLight * reached);
+      for (size_t power = 0; power < kPowersDrawn; ++power)
+        left[power + 1] = std::clamp(
+            double{closed_[at * kPowersDrawn + power].planes[channel][pixel]} / whole, 0.0, left[power]);
+      const double eighth = left[kPowersDrawn], fourth = left[kPowersDrawn - 1];
+      left[kPowersDrawn + 1] = fourth > 0.0 ? eighth * (eighth / fourth) * (eighth / fourth) : 0.0;
+      return left;
+    };
+    std::array<std::array<double, kClosed>, kShares> all{};
+    for (size_t at = 0; at + 1 < std::size(kClosedShares); ++at) {
+      const auto from = drawnAt(at), to = drawnAt(at + 1);
+      const int first = kClosedShares[at], last = kClosedShares[at + 1];
+      for (int share = first; share <= last; ++share)
+        for (size_t closed = 0; closed < kClosed; ++closed)
+          all[static_cast<size_t>(share)][closed] =
+              from[closed] + (to[closed] - from[closed]) * (share - first) / (last - first);
+    }
+    return all;
+  }
+
+  /// Light through a share of the extinction times a power of 1 − openness: the last of so many orders.
+  Picture drawnPower(double share, int power) {
+    const auto upTo = [&](int count) {
+      view_.scene.octaves.count = count;
+      return drawn(std::pow(share, 1.0 / power), 0.0);
+    };
+    Picture last = upTo(power);
+    const Picture before = power > 1 ? upTo(power - 1) : first_;
+    for (size_t channel = 0; channel < kChannels; ++channel)
+      for (size_t i = 0; i < last.planes[channel].size(); ++i)
+        last.planes[channel][i] -= before.planes[channel][i];
+    return last;
+  }
+
   Picture drawn(double a, double c) {
     view_.scene.octaves.a = a;
     view_.scene.octaves.c = c;
@@ -104,7 +191,7 @@ class Orders {
   ViewedScene view_;
   const PictureRequest& request_;
   Picture first_;
-  std::vector<Picture> even_, unshaded_;
+  std::vector<Picture> even_, unshaded_, closed_;
 };
 
 /// What `count` orders beyond the first weigh at each node.
@@ -114,9 +201,11 @@ std::vector<double> nodeWeights(const OctaveFactors& factors, int count) {
   for (int order = 0; order <= count; ++order) {
     const std::array<double, kShares> shares = shareWeights(a);
     const std::array<double, kLobes> lobes = lobeWeights(c);
+    const std::array<double, kClosed> closed = closedWeights(factors[kOpenness], order);
     for (size_t share = 0; share < shares.size(); ++share)
       for (size_t lobe = 0; lobe < lobes.size(); ++lobe)
-        weights[share * kLobes + lobe] += b * shares[share] * lobes[lobe];
+        for (size_t power = 0; power < closed.size(); ++power)
+          weights[nodeOf(share, lobe, power)] += b * shares[share] * lobes[lobe] * closed[power];
     a *= factors[0];
     b *= factors[1];
     c *= factors[2];
@@ -149,8 +238,9 @@ OctaveForm OctaveForm::of(Method& march, const ViewedScene& view, const PictureR
       const AtNodes x = orders.at(channel, i);
       form.constant_ += scale * double{one[i]} * double{two[i]};
       for (size_t n = 0; n < kNodes; ++n) {
+        if (x[n] == 0.0) continue;
         form.mixed_[n] += 0.5 * scale * x[n] * (double{one[i]} + double{two[i]});
-        for (size_t m = 0; m < kNodes; ++m) form.squares_[n * kNodes + m] += scale * x[n] * x[m];
+        for (size_t m = 0; m <= n; ++m) form.squares_[n * kNodes + m] += scale * x[n] * x[m];
       }
     }
   }
@@ -169,8 +259,8 @@ double OctaveForm::at(const OctaveFactors& factors, int count) const {
   for (size_t n = 0; n < kNodes; ++n) {
     if (weights[n] == 0.0) continue;
     double row = 0.0;
-    for (size_t m = 0; m < kNodes; ++m) row += squares_[n * kNodes + m] * weights[m];
-    sum += weights[n] * (row - 2.0 * mixed_[n]);
+    for (size_t m = 0; m < n; ++m) row += squares_[n * kNodes + m] * weights[m];
+    sum += weights[n] * (2.0 * row + squares_[n * kNodes + n] * weights[n] - 2.0 * mixed_[n]);
   }
   return sum;
 }

@@ -1,4 +1,4 @@
-// How far octaves are from truth in one view, for any factors and any count, from some twenty pictures: each
+// How far octaves are from truth in one view, for any factors and any count, from some fifty pictures: each
 // order is linear in light. Depends on preview/method.h, scene and preview/measure alone.
 #pragma once
 
@@ -11,8 +11,8 @@ namespace nephele {
 
 /// The mean square of relative errors over views as a quadratic form of what orders weigh at nodes: at shares
 /// of the extinction towards the light (1, ½, ¼ … and 0) times shares of the asymmetry (nodes of Chebyshev in
-/// [0, 1]). Between shares an order is interpolated, by cubics of the logarithm and by the polynomial through
-/// all nodes.
+/// [0, 1]) times powers of 1 − openness (0, 1, 2 … 16). Between shares an order is interpolated, by cubics of
+/// the logarithm and by the polynomial through all nodes.
 class OctaveForm {
  public:
   OctaveForm();
@@ -30,7 +30,7 @@ class OctaveForm {
   double at(const OctaveFactors& factors, int count) const;
 
  private:
-  std::vector<double> squares_;  // symmetric, node by node
+  std::vector<double> squares_;  // node by node; symmetric, so the triangle m ≤ n alone
   std::vector<double> mixed_;    // −½ of what is linear in the weights
   double constant_ = 0.0;
 };

@@ -62,7 +62,8 @@ struct March {
 #define NPH_POINTS true
 #define NPH_POWDER true
 #define NPH_LOBES true
-#define NPH_SKY (skyKind() == kSkyNone ? 0 : params.cacheShape.y > 0 ? 1 : 2)
+#define NPH_SKY (skyKind() == kSkyNone ? 0 : params.skySize.w != 0 ? 1 : 2)
+#define NPH_OPEN (params.skySize.z == kOpenParts)
 #include "shaders/shared/emission.glsl"
 #include "shaders/shared/environment.glsl"
 #include "shaders/shared/light.glsl"
@@ -87,6 +88,7 @@ struct March {
 #undef NPH_POWDER
 #undef NPH_LOBES
 #undef NPH_SKY
+#undef NPH_OPEN
 };
 
 /// A source without a light cache and temperatures, for marches whose parameters ask for none.

@@ -67,12 +67,13 @@ struct ArraySource {
   Volume<float> atlas, heatAtlas;
   Volume<float> columns;
   Volume<vec4> skies;
+  int skyParts = 1;  // beside each other along z
 
   uvec2 word(ivec3 brick) const { return layout->words[flat(layout->frame.brickCount, brick)]; }
   uint block(ivec3 block) const { return layout->blockWords[flat(layout->blockCount, block)]; }
   float column(vec3 texel) const { return columns.read(texel); }
   vec4 sky(int part, vec3 texel) const {
-    return skies.read(texel + vec3(0.0f, 0.0f, static_cast<float>(part * (skies.size.z / 2))));
+    return skies.read(texel + vec3(0.0f, 0.0f, static_cast<float>(part * (skies.size.z / skyParts))));
   }
 
   float density(uvec2 word, vec3 kept, ivec3 samples) const { return value(atlas, word, kept, samples); }
@@ -97,7 +98,10 @@ void fillCache(ArraySource& source, const March<ArraySource>& march) {
   const bool columns = p.cache.x > 0.0f && p.counts.x > 0;
   const bool sky = p.cacheShape.y > 0;
   if (columns) source.columns.make(layout.blockPlaces * p.cacheShape.x * ivec3(1, 1, p.counts.x));
-  if (sky) source.skies.make(layout.blockPlaces * p.cacheShape.y * ivec3(1, 1, 2));
+  if (sky) {
+    source.skyParts = p.skySize.z;
+    source.skies.make(layout.blockPlaces * p.cacheShape.y * ivec3(1, 1, source.skyParts));
+  }
   tbb::parallel_for(size_t{0}, layout.blocks.size(), [&](size_t number) {
     March<ArraySource> mine = march;
     const ivec3 block = layout.blocks[number];
@@ -118,10 +122,10 @@ void fillCache(ArraySource& source, const March<ArraySource>& march) {
       });
     if (!sky) return;
     each(p.cacheShape.y, [&](const ivec3& texel, const vec3& position, const vec2& turn) {
-      vec4 parts[2];
-      mine.skyToCache(position, turn, parts[0], parts[1], cost);
-      for (int part = 0; part < 2; ++part)
-        source.skies.at(texel + ivec3(0, 0, part * source.skies.size.z / 2)) = parts[part];
+      vec4 parts[kOpenParts];
+      mine.skyToCache(position, turn, parts[0], parts[1], parts[2], cost);
+      for (int part = 0; part < source.skyParts; ++part)
+        source.skies.at(texel + ivec3(0, 0, part * (source.skies.size.z / source.skyParts))) = parts[part];
     });
   });
 }

@@ -13,7 +13,7 @@ NPH_FN MarchResult walkVoxels(Ray r, uint random, uint number) {
   if (!intersectBox(origin, direction, vec3(params.boxMin) + vec3(1.0f), vec3(params.boxMax), tNear, tFar)) return result;
   tFar = min(tFar, r.reach);
   float margin = params.walk.x / length(direction);
-  float enough = columnThatHides(params.environment.w);
+  float enough = columnThatHides(params.environment.w, params.counts.y);
   Course course = courseOf(direction);
   vec3 before = vec3(1.0f);
   uint lit = 0u;

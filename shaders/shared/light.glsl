@@ -1,29 +1,32 @@
 // What reaches a point of the medium from lights and sky, and how much of it is scattered along a ray [MODEL.md, section 2].
 // Included as march.glsl is, after walk.glsl and environment.glsl. Some drivers run the branches that no pixel takes: what the
 // parameters do not ask for is left out by NPH_POINTS, NPH_POWDER and NPH_LOBES (point lights, powder, a second lobe), which
-// are true wherever it is not known.
+// are true wherever it is not known. NPH_OPEN is false where octaves do not ask how open a place is.
 
-// Σ over orders of b^m · phase(c^m g) · e^(−a^m σ_t column), to be multiplied by σ_s and the light's irradiance.
-NPH_FN vec3 scatteredByOrders(vec3 toLight, vec3 ray, float column) {
+// What an order scatters of the one before, at a place of that openness: light that leaves is not scattered again.
+NPH_FN vec3 scatteredAgain(vec3 openness) { return params.octaves.y * (vec3(1.0f) - params.octaves.w * openness); }
+
+// Σ over orders of again^m · phase(c^m g) · e^(−a^m σ_t column), to be multiplied by σ_s and the light's irradiance.
+NPH_FN vec3 scatteredByOrders(vec3 toLight, vec3 ray, float column, vec3 again) {
   vec3 sum = vec3(0.0f);
   float extinction = 1.0f;
-  float scattering = 1.0f;
+  vec3 scattering = vec3(1.0f);
   vec3 lobes = vec3(params.phase);
   for (int m = 0; m <= params.counts.y; ++m) {
     float phase = NPH_LOBES ? phaseFunction(toLight, ray, lobes) : phaseHenyeyGreenstein(toLight, ray, lobes.x);
     sum += scattering * phase * lessened((extinction * column) * vec3(params.sigmaT));
     extinction *= params.octaves.x;
-    scattering *= params.octaves.y;
+    scattering *= again;
     lobes.x *= params.octaves.z;
     lobes.y *= params.octaves.z;
   }
   return sum;
 }
 
-// The column beyond which no order lets through more than `smallest` of the light.
-NPH_FN float columnThatHides(float smallest) {
+// The column beyond which no order up to `orders` lets through more than `smallest` of the light.
+NPH_FN float columnThatHides(float smallest, int orders) {
   float extinction = min(params.sigmaT.x, min(params.sigmaT.y, params.sigmaT.z));
-  for (int m = 0; m < params.counts.y; ++m) extinction *= params.octaves.x;
+  for (int m = 0; m < orders; ++m) extinction *= params.octaves.x;
   // 1e30: with no extinction nothing hides.
   return extinction > 0.0f ? min(-log(smallest) / extinction, 1e30f) : 1e30f;
 }
@@ -109,6 +112,7 @@ NPH_FN float powderAt(vec3 position, float rho) {
 NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
                          NPH_INOUT(vec4) cost) {
   vec3 sum = vec3(0.0f);
+  vec3 again = NPH_OPEN ? scatteredAgain(opennessAt(position)) : vec3(params.octaves.y);
   int count = params.counts.x + (NPH_SKY == 2 ? 1 : 0);
   int done = 0;
   for (int i = 0; i < count; ++i) {
@@ -126,7 +130,7 @@ NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint
     } else {
       column = columnTowards(position, l.toLightIndex, l.reach, enough, start, cost);
     }
-    sum += l.irradiance * scatteredByOrders(l.toLight, ray, column);
+    sum += l.irradiance * scatteredByOrders(l.toLight, ray, column, again);
     done += 1;
   }
   if (done < count) cost.y = 1.0f;

@@ -3,7 +3,7 @@
 // after it; GLSL's scope or the struct provides
 //   uint blockWord(ivec3 block);               0: not kept. Else 1 + its place in the cache: 10 bits an axis
 //   float cachedColumn(vec3 texel);            trilinear; whole numbers are samples; 1/(1 + params.cache.y · column)
-//   vec4 cachedSky(int part, vec3 texel);      the same; 0: light scattered alike to all sides, see skyKept. 1: its slope
+//   vec4 cachedSky(int part, vec3 texel);      the same; 0: light scattered alike to all sides, see skyKept. 1: its slope. 2: openness
 
 NPH_CONST float kBlockEdge = 16.0f;
 
@@ -58,8 +58,8 @@ NPH_CONST float kLeastSkyShare = 1e-9f;
 NPH_FN vec3 skyKept(vec3 share) {
   return vec3(1.0f) / (vec3(1.0f) - kSkyMixedBy * log(clamp(share, vec3(kLeastSkyShare), vec3(1.0f))));
 }
-NPH_FN vec3 skyFromKept(vec3 kept) {
-  return vec3(params.skyOpen) * exp((vec3(1.0f) - vec3(1.0f) / max(kept, vec3(0.1f))) * (1.0f / kSkyMixedBy));
+NPH_FN vec3 shareFromKept(vec3 kept) {
+  return exp((vec3(1.0f) - vec3(1.0f) / max(kept, vec3(0.1f))) * (1.0f / kSkyMixedBy));
 }
 // Each coordinate is at most 3, where all light comes from one side and goes on.
 NPH_FN vec3 slopeKept(vec3 slope) { return slope * (1.0f / 6.0f) + vec3(0.5f); }
@@ -69,5 +69,11 @@ NPH_FN vec3 slopeFromKept(vec3 kept) { return (kept - vec3(0.5f)) * 6.0f; }
 // light comes from one side alone.
 NPH_FN vec3 skyScattering(vec3 position, vec3 ray) {
   vec3 texel = max(cacheTexel(position, params.cacheShape.y), vec3(0.0f));
-  return skyFromKept(vec3(cachedSky(0, texel))) * max(0.0f, 1.0f + dot(slopeFromKept(vec3(cachedSky(1, texel))), ray));
+  return vec3(params.skyOpen) * shareFromKept(vec3(cachedSky(0, texel))) * max(0.0f, 1.0f + dot(slopeFromKept(vec3(cachedSky(1, texel))), ray));
+}
+
+// Share of light that leaves the medium unscattered where it sets out evenly to all sides.
+NPH_FN vec3 opennessAt(vec3 position) {
+  vec3 texel = max(cacheTexel(position, params.cacheShape.y), vec3(0.0f));
+  return shareFromKept(vec3(cachedSky(2, texel)));
 }

@@ -39,33 +39,46 @@ NPH_FN vec3 skyDirection(int i, vec2 turn) {
 }
 
 // What the sky scatters at a position towards a ray, per unit density and before σ_s, to first order in the ray's direction
-// (the phase function's and the sky's first two bands of spherical harmonics), as the cache keeps it: see skyScattering.
-NPH_FN void skyToCache(vec3 position, vec2 turn, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NPH_INOUT(vec4) cost) {
-  float enough = columnThatHides(1e-3f);  // of a sky that comes from all sides, less is not seen
+// (the phase function's and the sky's first two bands of spherical harmonics), as the cache keeps it: see skyScattering. And
+// how open the place is.
+NPH_FN void skyToCache(vec3 position, vec2 turn, NPH_OUT(vec4) sky0, NPH_OUT(vec4) sky1, NPH_OUT(vec4) open, NPH_INOUT(vec4) cost) {
+  // Of a sky that comes from all sides, less than 1e-3 is not seen; without one there are no orders.
+  float enough = columnThatHides(1e-3f, skyKind() == kSkyNone ? 0 : params.counts.y);
   vec2 steps = stepsFrom(position, vec2(params.cacheSteps.z, params.cacheSteps.w));
-  vec3 even = vec3(0.0f);
-  vec3 open = vec3(0.0f);  // the same where nothing hides the sky
-  vec3 slope = vec3(0.0f);
+  vec3 toSkies[kSkyDirections];
+  float columns[kSkyDirections];
+  vec3 openness = vec3(0.0f);
   for (int i = 0; i < kSkyDirections; ++i) {
     vec3 toSky = skyDirection(i, turn);
+    toSkies[i] = toSky;
     vec3 toSkyIndex = toSky.x * vec3(params.indexFromWorldX) + toSky.y * vec3(params.indexFromWorldY) +
                       toSky.z * vec3(params.indexFromWorldZ);
-    float column = columnDensity(position, toSkyIndex, 3.0e38f, enough, steps, 0.5f, cost);
+    columns[i] = columnDensity(position, toSkyIndex, 3.0e38f, enough, steps, 0.5f, cost);
+    openness += lessened(columns[i] * vec3(params.sigmaT)) * (1.0f / float(kSkyDirections));
+  }
+  vec3 again = NPH_OPEN ? scatteredAgain(openness) : vec3(params.octaves.y);
+  vec3 even = vec3(0.0f);
+  vec3 unhidden = vec3(0.0f);  // the same where nothing hides the sky
+  vec3 slope = vec3(0.0f);
+  for (int i = 0; i < kSkyDirections; ++i) {
     float extinction = 1.0f;
-    float scattering = 1.0f / float(kSkyDirections);
+    vec3 scattering = vec3(1.0f / float(kSkyDirections));
+    float unhiddenScattering = 1.0f / float(kSkyDirections);
     float g = phaseMeanCosine(vec3(params.phase));
-    vec3 radiance = environmentRadiance(toSky);
+    vec3 radiance = environmentRadiance(toSkies[i]);
     for (int m = 0; m <= params.counts.y; ++m) {
-      vec3 light = scattering * radiance * lessened((extinction * column) * vec3(params.sigmaT));
+      vec3 light = scattering * radiance * lessened((extinction * columns[i]) * vec3(params.sigmaT));
       even += light;
-      open += scattering * radiance;
-      slope += (3.0f * g * dot(light, vec3(1.0f / 3.0f))) * toSky;
+      unhidden += unhiddenScattering * radiance;
+      slope += (3.0f * g * dot(light, vec3(1.0f / 3.0f))) * toSkies[i];
       extinction *= params.octaves.x;
-      scattering *= params.octaves.y;
+      scattering *= again;
+      unhiddenScattering *= params.octaves.y;
       g *= params.octaves.z;
     }
   }
   // Shares of the same few directions err the less, and not at all where nothing hides the sky.
-  sky0 = vec4(skyKept(even / max(open, vec3(1e-30f))), 0.0f);
+  sky0 = vec4(skyKept(even / max(unhidden, vec3(1e-30f))), 0.0f);
   sky1 = vec4(slopeKept(slope / max(dot(even, vec3(1.0f / 3.0f)), 1e-30f)), 0.0f);
+  open = vec4(skyKept(openness), 0.0f);
 }

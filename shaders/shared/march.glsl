@@ -79,7 +79,7 @@ NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
   tFar = min(tFar, r.reach);
   float voxel = 1.0f / length(direction);  // world units
   float margin = params.walk.x * voxel;
-  float enough = columnThatHides(params.environment.w);
+  float enough = columnThatHides(params.environment.w, params.counts.y);
   Course course = courseOf(direction);
   uint lit = 0u;
   uvec2 word = uvec2(0u);  // of the brick that the ray is in

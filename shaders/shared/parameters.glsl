@@ -10,6 +10,10 @@ NPH_CONST int kBlackbodyNodes = 128;
 NPH_CONST float kColumnsInHalves = 1.0f;
 NPH_CONST float kColumnsInBytes = 2.0f;
 
+// Parts of what the light cache keeps of all directions: even light and its slope; openness as well.
+NPH_CONST int kSkyParts = 2;
+NPH_CONST int kOpenParts = 3;
+
 // Kinds of environment, in params.skyUp.w.
 NPH_CONST int kSkyNone = 0;
 NPH_CONST int kSkyConstant = 1;
@@ -44,7 +48,7 @@ struct MarchParameters {
   vec4 boxMax;
   vec4 sigmaT;       // per unit density per world unit
   vec4 sigmaS;       // w: step, voxels
-  vec4 octaves;      // a, b, c
+  vec4 octaves;      // a, b, c, d
   vec4 shadow;       // x: first step towards a light, voxels. y: growth from each step to the next, at least 1. z: voxels of the
                      // index that count as one at least, for the view's steps; w: the same, for the light cache
   vec4 phase;        // the phase function's lobes: x: g of the first, y: of the second, z: share of the second
@@ -58,14 +62,15 @@ struct MarchParameters {
   vec4 skyUp;        // unit, world axes. w: kind, see environment.glsl
   vec4 skyRight;     // axes of a map
   vec4 skyForward;   // w: 1 where the picture holds the environment behind the medium, else 0
-  ivec4 skySize;     // x, y: texels of a map
+  ivec4 skySize;     // x, y: texels of a map. z: parts of the light cache's samples of all directions: 0, kSkyParts or
+                     // kOpenParts. w: 1 where the sky is taken from them
   vec4 skyOpen;      // what a place that nothing shades scatters of the sky, mean over directions, per unit density, before σ_s
   vec4 walk;         // x: way into the next brick, voxels, that rounding may take. y: no sample exceeds it. z, w: optical
                      // depth of a step, of its variation over the brick, below which steps grow; z = 0: fixed steps
   vec4 cache;        // x: kColumns… where columns come from the light cache, else 0. y: what one stands for there, density · world units.
                      // z, w: way marched towards a light before the cache is asked, voxels, and its steps
   vec4 cacheSteps;   // first step, voxels, and growth of those that fill the cache: x, y for columns, z, w for the sky
-  ivec4 cacheShape;  // x: samples along a block's edge, columns. y: the same, sky; 0: no sky there. z: texels along z a light.
+  ivec4 cacheShape;  // x: samples along a block's edge, columns. y: the same, of all directions; 0: none. z: texels along z a light.
                      // w: 1 where bricks are of several levels
   ivec4 blockCount;  // blocks of the light cache along each axis. w: 1 where skips are checked
   ivec4 counts;      // x: lights. y: octaves beyond the first. z: 1 where samples are kept as shares of their

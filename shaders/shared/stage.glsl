@@ -89,7 +89,7 @@ NPH_FN vec3 indexFromStage(vec3 v) {
 NPH_FN MarchResult stageAlong(Ray r, float start, uint random, uint number) {
   MarchResult result = nothingMarched();
   vec3 left = vec3(1.0f);
-  float enough = columnThatHides(params.environment.w);
+  float enough = columnThatHides(params.environment.w, params.counts.y);
   float back = r.before;  // way from the origin back to where the ray begins
   float gone = 0.0f;      // way to there from the camera
   float pixel = length(vec3(params.rayDy));

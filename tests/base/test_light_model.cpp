@@ -83,6 +83,16 @@ TEST(Furnace, IsTheIntegralOverDepthAndDirection) {
   EXPECT_NEAR(furnaceValue(1, a, 1.0) - furnaceValue(0, a, 1.0), sum, 1e-6);
 }
 
+TEST(Furnace, OpennessTakesFromOrdersBeyondTheFirst) {
+  // With a = 0 order 1 adds b ½ ∫ e^(−τ) (1 − d ½ E₂(τ)) dτ, and ∫ e^(−τ) E₂(τ) dτ = 1 − ln 2.
+  for (const double d : {0.3, 1.0})
+    EXPECT_NEAR(furnaceValue(1, 0.0, 0.8, d) - furnaceValue(0, 0.0, 0.8, d),
+                0.8 * 0.5 * (1.0 - 0.5 * d * (1.0 - std::log(2.0))), 1e-5)
+        << d;
+  EXPECT_NEAR(furnaceValue(8, 0.9, 0.9, 1e-9), furnaceValue(8, 0.9, 0.9), 1e-5);
+  EXPECT_LT(furnaceValue(8, 0.9, 0.9, 1.0), 0.9 * furnaceValue(8, 0.9, 0.9));
+}
+
 TEST(Presets, EachIsASunUnderASky) {
   EXPECT_EQ(presets().size(), 5u);
   for (const Preset& preset : presets()) {

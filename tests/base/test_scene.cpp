@@ -56,7 +56,7 @@ TEST(Scene, ReadsEveryKey) {
   const Scene scene = sceneOf(
       "camera: { position: [1, 2, 3], target: [4, 5, 6], up: [0, 1, 0], fov: 90 }\n"
       "medium: { sigma_s: 2, sigma_a: [0.1, 0.2, 0.3], g: -0.5 }\n"
-      "octaves: { count: 3, a: 0.1, b: 0.2, c: 0.3 }\n"
+      "octaves: { count: 3, a: 0.1, b: 0.2, c: 0.3, d: 0.4 }\n"
       "lights:\n  - sun: { to_light: [0, 0, 5], irradiance: 2 }\n"
       "  - point: { position: [7, 8, 9], intensity: [1, 2, 3] }\n"
       "environment: { constant: [0.5, 0.6, 0.7], show: true }\n"
@@ -71,6 +71,7 @@ TEST(Scene, ReadsEveryKey) {
   EXPECT_EQ(scene.medium->sigmaS, (Rgb{2, 2, 2}));
   EXPECT_EQ(scene.medium->sigmaA, (Rgb{0.1, 0.2, 0.3}));
   EXPECT_EQ(scene.octaves.count, 3);
+  EXPECT_EQ(scene.octaves.d, 0.4);
   EXPECT_EQ(std::get<Sun>(scene.lights[0]).toLight, glm::dvec3(0, 0, 1));
   EXPECT_EQ(std::get<PointLight>(scene.lights[1]).intensity, (Rgb{1, 2, 3}));
   EXPECT_TRUE(scene.environment.show);
@@ -132,7 +133,7 @@ TEST(Scene, WrittenAndReadIsTheSame) {
        {"", "lights: []\n", "look: report\ncamera: { fov: 1e-3 }\n",
         "phase: { silver_lining: {} }\npowder: { on: auto, o_sa: 0.7 }\nlight_transmittance: chord\n",
         "phase: { silver_lining: { on: false, in_s: 0.1, out_s: 0, blend: 1 } }\npowder: { on: false }\n",
-        "emission: { scale: 0.3, grid: 'a \"b\" \\c' }\noctaves: { count: auto, b: 0.1 }\n",
+        "emission: { scale: 0.3, grid: 'a \"b\" \\c' }\noctaves: { count: auto, b: 0.1, d: 0.3 }\n",
         "environment: { ramp: { ground: 0.1, cloudiness: 0.3, intensity: 0.7 }, show: true }\n",
         "environment: { exr: { path: 'a: b.exr', rotation: 77.7, intensity: 2 } }\n",
         "stage: { floor: false, height: -0.3, checker: auto, penumbra: 0 }\n",

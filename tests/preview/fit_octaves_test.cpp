@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -15,7 +16,7 @@ namespace nephele {
 namespace {
 
 TEST(FitOctaves, FindsTheLeastPointOfAKnownFunction) {
-  for (const OctaveFactors least : {OctaveFactors{0.3, 0.6, 0.2}, OctaveFactors{1.0, 0.0, 0.5}}) {
+  for (const OctaveFactors least : {OctaveFactors{0.3, 0.6, 0.2, 0.7}, OctaveFactors{1.0, 0.0, 0.5, 1.0}}) {
     const auto cost = [&](const OctaveFactors& at) {
       double sum = 0.0;
       for (size_t i = 0; i < at.size(); ++i) {
@@ -49,21 +50,30 @@ TEST(FitOctaves, StopsAfterTheMostTries) {
   EXPECT_LE(tries, 24u);  // a shrinking step may end beyond by its corners
 }
 
-/// Orders with the factors' roles: light through columns of i, phases of the place.
+/// Orders with the factors' roles: light through columns of i, phases and openness of the place.
 double radianceAt(const Octaves& octaves, size_t pixel, double azimuth) {
   double sum = 0.0, a = 1.0, b = 1.0, c = 1.0;
   const double column = 0.2 + 0.01 * static_cast<double>(pixel % 97),
-               turn = std::sin(0.07 * static_cast<double>(pixel) + azimuth);
+               turn = std::sin(0.07 * static_cast<double>(pixel) + azimuth),
+               openness = 0.05 + 0.009 * static_cast<double>(pixel % 89);
   for (int m = 0; m <= *octaves.count; ++m) {
     sum += b * std::exp(-3.0 * a * column) * (1.0 + 0.8 * c * turn);
     a *= octaves.a;
-    b *= octaves.b;
+    b *= octaves.b * (1.0 - octaves.d * openness);
     c *= octaves.c;
   }
   return sum;
 }
 
-constexpr Octaves kTrue{6, 0.7, 0.35, 0.4, true};
+constexpr Octaves kTrue{6, 0.7, 0.5, 0.4, 0.6, true};
+FitOptions quickly() {
+  FitOptions options;
+  options.width = 24;
+  options.height = 18;
+  options.quiet = true;
+  return options;
+}
+
 constexpr double kMiddleSun = kFittedElevations[1];
 
 class KnownOctaves : public Method {
@@ -105,15 +115,17 @@ TEST(FitOctaves, ASquareOfErrorsIsThatOfThePictureItself) {
   const ViewedScene view;
   PictureCost cost;
   const Picture reference = truth.render(view, request, cost);
-  constexpr double kApart = 4e-3;  // twice what interpolation adds to radiance, 0.2%
+  constexpr double kApart =
+      4e-3;  // twice what interpolation adds to radiance, 0.2% of truth or of the picture
   OctaveForm form = OctaveForm::of(march, view, request, reference);
   for (const int count : {1, 6, 16})
-    for (const OctaveFactors factors : {kUnfittedFactors, OctaveFactors{0.7, 0.35, 0.9},
-                                        OctaveFactors{0.0, 1.0, 0.0}, OctaveFactors{1.0, 0.2, 1.0}}) {
+    for (const OctaveFactors factors :
+         {kUnfittedFactors, OctaveFactors{0.7, 0.35, 0.9, 0.3}, OctaveFactors{0.0, 1.0, 0.0, 1.0},
+          OctaveFactors{1.0, 0.2, 1.0, 0.6}}) {
       ViewedScene drawn;
-      drawn.scene.octaves = {count, factors[0], factors[1], factors[2], true};
+      drawn.scene.octaves = {count, factors[0], factors[1], factors[2], factors[3], true};
       const double error = compareWithHalves(march.render(drawn, request, cost), reference).relativeRmse;
-      EXPECT_NEAR(form.at(factors, count), error * error, kApart * error + 1e-5)
+      EXPECT_NEAR(form.at(factors, count), error * error, kApart * error * std::max(1.0, error) + 1e-5)
           << count << ' ' << factors[0];
     }
   const double one = form.at(kUnfittedFactors, 6);
@@ -124,8 +136,7 @@ TEST(FitOctaves, ASquareOfErrorsIsThatOfThePictureItself) {
 TEST(FitOctaves, WithoutACountTakesTheFewestThatDoNearlyAsWell) {
   KnownOctaves march(false), truth(true);
   const BrickVolume bricks;
-  FitOptions options;
-  options.quiet = true;
+  FitOptions options = quickly();
   const FitResult free = fitOctaves(march, truth, {{"known", &bricks, ViewedScene{}}}, {}, options);
   EXPECT_GE(free.count, 2);
   EXPECT_LE(free.count, *kTrue.count);
@@ -135,14 +146,14 @@ TEST(FitOctaves, WithoutACountTakesTheFewestThatDoNearlyAsWell) {
 TEST(FitOctaves, RecoversKnownFactorsThroughNoiseAndHalvesTheErrorOfTheUnfitted) {
   KnownOctaves march(false), truth(true);
   const BrickVolume bricks;
-  FitOptions options;
-  options.quiet = true;
+  FitOptions options = quickly();
   options.count = kTrue.count;
   const FitResult result = fitOctaves(march, truth, {{"known", &bricks, ViewedScene{}}}, {}, options);
   for (const OctaveFactors& factors : result.factors) {
     EXPECT_NEAR(factors[0], kTrue.a, 0.05);
     EXPECT_NEAR(factors[1], kTrue.b, 0.05);
     EXPECT_NEAR(factors[2], kTrue.c, 0.1);
+    EXPECT_NEAR(factors[3], kTrue.d, 0.1);
   }
   size_t held = 0;
   for (const FitView& view : result.views) held += view.fitted ? 0 : 1;
@@ -159,29 +170,28 @@ class FollowsTheSun : public KnownOctaves {
   static OctaveFactors factorsOf(double elevation) { return factorsAt(kFactors, elevation); }
   Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
     const OctaveFactors f = factorsOf(sunElevation(view.scene, view.up));
-    octaves_ = {kTrue.count, f[0], f[1], f[2], true};
+    octaves_ = {kTrue.count, f[0], f[1], f[2], f[3], true};
     return KnownOctaves::render(view, request, cost);
   }
-  static constexpr SunFactors kFactors{{{0.3, 0.5, 0.4}, {0.6, 0.4, 0.4}, {0.8, 0.7, 0.4}}};
+  static constexpr SunFactors kFactors{{{0.3, 0.5, 0.4, 0.2}, {0.6, 0.4, 0.4, 0.4}, {0.8, 0.7, 0.4, 0.5}}};
 };
 
 TEST(FitOctaves, FactorsFollowTheSunsHeight) {
   KnownOctaves march(false);
   FollowsTheSun truth(true);
   const BrickVolume bricks;
-  FitOptions options;
-  options.quiet = true;
+  FitOptions options = quickly();
   options.count = kTrue.count;
   const FitResult result = fitOctaves(march, truth, {{"known", &bricks, ViewedScene{}}}, {}, options);
   for (size_t node = 0; node < result.factors.size(); ++node)
-    for (size_t i = 0; i < 3; ++i)
+    for (size_t i = 0; i < FollowsTheSun::kFactors[node].size(); ++i)
       EXPECT_NEAR(result.factors[node][i], FollowsTheSun::kFactors[node][i], 0.12) << node << ' ' << i;
   EXPECT_LT(errorOver(result.views, false, FitStage::after), 0.1);
   EXPECT_LT(errorOver(result.views, false, FitStage::atBest), 0.02);
 }
 
 TEST(FitOctaves, FactorsAreLinearBetweenHeightsOfTheSunAndHoldBeyond) {
-  constexpr SunFactors kFactors{{{0.0, 0.2, 1.0}, {0.5, 0.4, 0.0}, {1.0, 0.4, 0.5}}};
+  constexpr SunFactors kFactors{{{0.0, 0.2, 1.0, 0.0}, {0.5, 0.4, 0.0, 0.8}, {1.0, 0.4, 0.5, 1.0}}};
   const auto [low, middle, high] = kFittedElevations;
   EXPECT_EQ(factorsAt(kFactors, low), kFactors[0]);
   EXPECT_EQ(factorsAt(kFactors, middle), kFactors[1]);
@@ -224,17 +234,21 @@ TEST(FitOctaves, ASceneTakesTheFilesFactorsWhereItGivesNone) {
   EXPECT_EQ(octaves.b, 0.75);
   EXPECT_EQ(octaves.c, 1.0);
   EXPECT_FALSE(octaves.count);
-  Octaves given{3, 0.1, 0.2, 0.3, true};
+  EXPECT_EQ(octaves.d, 0.0);
+  Octaves given{3, 0.1, 0.2, 0.3, 0.4, true};
   EXPECT_FALSE(takeFittedFactors(given, bricks, kMiddleSun));
   EXPECT_EQ(given.a, 0.1);
   bricks.metadata["octaves_a"] = "[0.25, 0.5, 1]";
   EXPECT_TRUE(takeFittedFactors(octaves, bricks, kFittedElevations[2]));
   EXPECT_EQ(octaves.a, 1.0);
   EXPECT_EQ(octaves.b, 0.75);
+  bricks.metadata["octaves_d"] = "[1, 0.5, 0.25]";
+  EXPECT_TRUE(takeFittedFactors(octaves, bricks, kFittedElevations[2]));
+  EXPECT_EQ(octaves.d, 0.25);
   bricks.metadata["octaves_count"] = "9";
   EXPECT_TRUE(takeFittedFactors(octaves, bricks, kMiddleSun));
   EXPECT_EQ(octaves.count, 9);
-  Octaves counted{3, 0.5, 0.5, 0.5, false};
+  Octaves counted{3, 0.5, 0.5, 0.5, 0.0, false};
   EXPECT_TRUE(takeFittedFactors(counted, bricks, kMiddleSun));
   EXPECT_EQ(counted.count, 3);
   for (const char* wrong : {"17", "2.5", "-1", "many"}) {

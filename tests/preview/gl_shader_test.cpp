@@ -30,8 +30,8 @@ TEST(GlShader, ParameterOffsetsAreTheDrivers) {
   const GlProgram program =
       buildProgram("screen.vert", "march.frag",
                    {"NPH_FILTER_EXACT 1", "NPH_METHOD 0", "NPH_STAGE 0", "NPH_GREY false", "NPH_MAP true",
-                    "NPH_SHOWN_SKY true", "NPH_CACHED true", "NPH_SKY 2", "NPH_NEAR true", "NPH_POINTS true",
-                    "NPH_POWDER true", "NPH_LOBES true"});
+                    "NPH_SHOWN_SKY true", "NPH_CACHED true", "NPH_SKY 2", "NPH_OPEN true", "NPH_NEAR true",
+                    "NPH_POINTS true", "NPH_POWDER true", "NPH_LOBES true"});
 #define OFFSET(member) \
   { #member, offsetof(MarchParameters, member) }
   const struct {

@@ -1,7 +1,8 @@
-// What the light cache keeps, by the march compiled as C++: columns against a closed form.
+// What the light cache keeps, by the march compiled as C++: columns and openness against integrals.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numbers>
 
 #include "preview/gpu/camera_rays.h"
@@ -35,6 +36,52 @@ TEST(LightCache, FarOctavesSeeThroughWhatHidesTheSun) {
   std::printf("octaves behind 144 optical depths: %.4f of the closed form\n",
               double{pixels[0].radiance.x} / expected);
   EXPECT_NEAR(double{pixels[0].radiance.x} / expected, 1.0, 0.02);
+}
+
+TEST(LightCache, OrdersLoseWhatAnOpenPlaceLetsOut) {
+  // A ball 6 optical depths across, by its middle: the order beyond the first, light of which nothing is
+  // hidden (a = 0), adds 1/(4π) ∫ σ e^(−σ s) (1 − d E(r)) ds, r the distance from the centre and E the mean
+  // over directions of e^(−σ way out).
+  constexpr int kEdge = 64;
+  constexpr double kRadius = 30.0, kSigma = 0.1, kOpen = 0.9, kMiddle = 0.5 * (kEdge - 1);
+  std::vector<float> density;
+  for (int z = 0; z < kEdge; ++z)
+    for (int y = 0; y < kEdge; ++y)
+      for (int x = 0; x < kEdge; ++x)
+        density.push_back(glm::length(glm::dvec3(x, y, z) - kMiddle) < kRadius ? 1.0f : 0.0f);
+  const BrickVolume bricks = bricksFromDense(density, glm::ivec3(kEdge), glm::ivec3(0), glm::dmat4(1.0));
+  ViewedScene view;
+  view.camera.target = glm::dvec3(kMiddle);
+  view.camera.position = glm::dvec3(-1e3, kMiddle, kMiddle);
+  view.camera.fov = 1e-4;
+  view.medium = {{kSigma, kSigma, kSigma}, {0.0, 0.0, 0.0}, 0.0};
+  view.scene.lights = {Sun{glm::dvec3(1.0, 0.0, 0.0), {1.0, 1.0, 1.0}}};
+  view.scene.march.stepVoxels = 0.05;
+  view.scene.march.adaptive = false;
+  const auto seen = [&](int count, double d, bool cached) {
+    view.scene.octaves = {count, 0.0, 1.0, 0.0, d};
+    view.scene.march.lightCache = cached;
+    const shared::MarchParameters p = marchParameters(view, bricks, 1, 1, 0, false);
+    return double{marchPicture(bricks, p, 1, 1, glm::vec2(0.5f), 0)[0].radiance.x};
+  };
+  double expected = 0.0;
+  constexpr int kSteps = 400;
+  for (int i = 0; i < kSteps; ++i) {
+    const double s = 2.0 * kRadius * (i + 0.5) / kSteps, r = std::abs(kRadius - s);
+    double open = 0.0;
+    for (int k = 0; k < kSteps; ++k) {
+      const double mu = -1.0 + 2.0 * (k + 0.5) / kSteps;
+      open += std::exp(-kSigma * (std::sqrt(kRadius * kRadius - r * r * (1.0 - mu * mu)) - r * mu)) / kSteps;
+    }
+    expected += kSigma * std::exp(-kSigma * s) * (1.0 - kOpen * open) * 2.0 * kRadius / kSteps;
+  }
+  expected /= 4.0 * std::numbers::pi;
+  for (const bool cached : {false, true}) {  // marched light knows openness from the cache too
+    const double added = seen(1, kOpen, cached) - seen(0, kOpen, cached);
+    std::printf("light scattered again in a ball: %.4f of the integral\n", added / expected);
+    EXPECT_NEAR(added / expected, 1.0, 0.02);
+    EXPECT_LT(added, 0.8 * (seen(1, 0.0, cached) - seen(0, 0.0, cached)));
+  }
 }
 
 }  // namespace

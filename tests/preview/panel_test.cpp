@@ -28,6 +28,7 @@ const std::map<std::string, std::string> kLabels{
     {"octaves.a", "a extinction"},
     {"octaves.b", "b scattering"},
     {"octaves.c", "c asymmetry"},
+    {"octaves.d", "d openness"},
     {"emission.on", "emission"},
     {"emission.scale", "scale"},
     {"emission.temperature_scale", "kelvin per unit"},
