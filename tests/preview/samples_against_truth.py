@@ -12,15 +12,14 @@ import argparse
 import json
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from samples import ROOT, add_arguments, add_row, baked, run, with_scenes
+
 DATA = ROOT.parent / "shared" / "data"
 # Their point lights stand in the medium: truth has a variance without bound there, and no figure is sure.
 POINTS_INSIDE = {"nebula"}
-FRAME = 20  # of those that are sequences
 PROCESSOR_SLACK = 1.3  # the processor's time for the same work differs by this much between two runs
 DEFAULTS_WITHIN = 0.02
 SAMPLES = "256"  # a pixel, of the march: where voxels are as small as pixels, 64 leave 2% of noise
@@ -36,13 +35,6 @@ def without_sky(scene):
     return re.sub(r"(?m)^  environment:.*\n?", "", scene)
 
 
-def run(*command):
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
-    if done.returncode != 0:
-        sys.exit(f"{' '.join(map(str, command))}\nended with {done.returncode}: {done.stderr}")
-    return done
-
-
 class Checks:
     def __init__(self):
         self.failed = 0
@@ -50,12 +42,6 @@ class Checks:
     def that(self, good, sentence):
         print(("ok    " if good else "WRONG ") + sentence, flush=True)
         self.failed += 0 if good else 1
-
-
-def add_row(options, row):
-    if options.rows:
-        with open(options.rows, "a", encoding="utf-8") as rows:
-            print("| " + " | ".join(row) + " |", file=rows)
 
 
 def keeps_its_word(checks, options, name, volume, scene, errors, folder):
@@ -77,7 +63,7 @@ def keeps_its_word(checks, options, name, volume, scene, errors, folder):
                             f"{name}: {looser['asked']:.0%} costs {looser[cost]:.4g}, {error:.0%} {found[cost]:.4g} ({cost})")
         before.append(found)
     if errors:
-        add_row(options, row)
+        add_row(options, *row)
 
 
 def is_near_truth(checks, options, name, volume, scene, folder):
@@ -86,37 +72,31 @@ def is_near_truth(checks, options, name, volume, scene, folder):
     run(preview, volume, "--scene", scene, "--render", truth, "--size", size, "--method", "reference", "--bounces", "0",
         "--error", "3%", "--aov")
     run(preview, volume, "--scene", scene, "--render", marched, "--size", size, "--spp", SAMPLES)
-    error = json.loads(run(preview, "compare", marched, truth, "--json").stdout)["relative_rmse"]
+    error = json.loads(run(preview, "compare", marched, truth, "--json"))["relative_rmse"]
     checks.that(error <= DEFAULTS_WITHIN, f"{name}: the march at its defaults errs by {error:.2%} of single scattering")
     if not options.errors:
-        add_row(options, [name, f"{error:.2%}"])
+        add_row(options, name, f"{error:.2%}")
 
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("bake")
-    parser.add_argument("preview")
-    parser.add_argument("--only", default="")
+    add_arguments(parser)
     parser.add_argument("--errors", default="10%,3%,1%")
     parser.add_argument("--size", default="240x135")
     parser.add_argument("--no-defaults", action="store_true")
-    parser.add_argument("--rows")
     options = parser.parse_args()
     errors = sorted((float(e.strip("%")) / 100 for e in filter(None, options.errors.split(","))), reverse=True)
-    wanted = set(filter(None, options.only.split(",")))
+    wanted = options.only
     checks = Checks()
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        for recipe in sorted((ROOT / "samples").glob("*.yaml")):
-            name, text = recipe.stem, recipe.read_text()
-            if (wanted and name not in wanted) or "\nscene:" not in text:
+        for name, recipe in with_scenes().items():
+            if wanted and name not in wanted:
                 continue
             if name in POINTS_INSIDE:
                 print(f"left out: {name}, whose point lights stand in the medium")
                 continue
-            frames = ["--frames", f"{FRAME}-{FRAME}"] if "\n    frames:" in text else []
-            run(options.bake, recipe, "--out", folder, "--quiet", *frames)
-            volume = folder / (f"{name}_{FRAME:04d}.vdb" if frames else f"{name}.vdb")
+            volume, text = baked(options.bake, name, recipe, folder), recipe.read_text()
             scene, sun = folder / "scene.yaml", folder / "sun.yaml"
             scene.write_text(single_scattering(text))
             sun.write_text(without_sky(single_scattering(text)))
