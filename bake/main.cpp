@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "base/tolerance.h"
 #include "base/version.h"
+#include "volume/check.h"
 #include "volume/difference.h"
 #include "volume/info.h"
 
@@ -31,7 +32,7 @@ struct Command {
   std::vector<std::string> files;
   bool json = false, stability = false;
   std::string node;
-  std::string first, second, tolerance, page;
+  std::string first, second, tolerance, page, audience;
 };
 
 Shard parseShard(const std::string& text) {
@@ -126,8 +127,22 @@ int chart(const Command& command) {
   return kExitDone;
 }
 
-int notBuilt(const std::string& name) {
-  throw InputError({}, "'nephele-bake " + name + "' is not built yet");
+int check(const Command& command) {
+  const Audience audience = audienceOf(command.audience);
+  std::vector<FileCheck> checks;
+  std::vector<Diagnostic> unread;  // told once all others were checked
+  for (const std::string& file : command.files) try {
+      checks.push_back(checkFile(file, audience));
+    } catch (const InputError& error) {
+      unread.insert(unread.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  if (command.json)
+    std::cout << checksAsJson(checks);
+  else
+    for (const FileCheck& file : checks) std::cout << checkAsText(file);
+  if (!unread.empty()) throw InputError(unread);
+  return std::all_of(checks.begin(), checks.end(), [](const FileCheck& c) { return c.good(); }) ? kExitDone
+                                                                                                : kExitNo;
 }
 
 void addBake(CLI::App& app, Command& command) {
@@ -179,6 +194,18 @@ Subcommand addDiff(CLI::App& app, Command& command) {
   return {sub, diff};
 }
 
+Subcommand addCheck(CLI::App& app, Command& command) {
+  CLI::App* const sub = app.add_subcommand(
+      "check",
+      "Whether .vdb files open well in other programs, a verdict for each rule; exit 3 if one does not");
+  sub->add_option("FILE.vdb", command.files, "Files, whoever wrote them")->required();
+  sub->add_option("--for", command.audience,
+                  "Only the rules of this program: blender, houdini, unreal; default: all")
+      ->type_name("DCC");
+  sub->add_flag("--json", command.json, "As JSON");
+  return {sub, check};
+}
+
 Subcommand addChart(CLI::App& app, Command& command) {
   CLI::App* const sub = app.add_subcommand(
       "chart", "Density and optical-depth error against seconds, bytes and memory of one asset's bake");
@@ -204,9 +231,7 @@ int run(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   addBake(app, command);
   const Subcommand subcommands[] = {addInfo(app, command), addNodes(app, command), addDiff(app, command),
-                                    addChart(app, command)};
-  for (const char* const name : {"check"})
-    app.add_subcommand(name, "Not built yet")->allow_extras()->callback([name] { notBuilt(name); });
+                                    addCheck(app, command), addChart(app, command)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "volume/inspect_grid.h"
 #include "volume/vdb_file.h"
 #include "volume/vdb_header.h"
 
@@ -40,6 +41,8 @@ uint64_t denseBytesOf(const GridInfo& grid) {
   return bytes;
 }
 
+}  // namespace
+
 GridInfo inspectGrid(const openvdb::GridBase& grid) {
   GridInfo info;
   info.name = grid.getName();
@@ -54,9 +57,12 @@ GridInfo inspectGrid(const openvdb::GridBase& grid) {
     info.boxMin = {box.min().x(), box.min().y(), box.min().z()};
     info.boxMax = glm::ivec3(box.max().x(), box.max().y(), box.max().z()) + 1;
   }
-  const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) info.worldFromIndex[i][j] = matrix(i, j);
+  info.linear = grid.transform().isLinear();
+  if (info.linear) {
+    const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) info.worldFromIndex[i][j] = matrix(i, j);
+  }
   info.bytes = grid.memUsage();
   info.denseBytes = denseBytesOf(info);
   info.contentHash = contentHash(grid);
@@ -64,7 +70,6 @@ GridInfo inspectGrid(const openvdb::GridBase& grid) {
   return info;
 }
 
-/// "12.3 MiB".
 std::string sizeText(uint64_t bytes) {
   constexpr std::array<const char*, 7> kUnits{"bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
   constexpr double kStep = 1024.0;
@@ -75,6 +80,8 @@ std::string sizeText(uint64_t bytes) {
   text << std::fixed << std::setprecision(unit == 0 ? 0 : 1) << amount << ' ' << kUnits[unit];
   return text.str();
 }
+
+namespace {
 
 std::string vectorText(const glm::ivec3& v) {
   return std::string("[") + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
@@ -112,7 +119,8 @@ void addGrid(std::ostringstream& text, const GridInfo& grid) {
   addRow(text, "box",
          vectorText(grid.boxMin) + " up to " + vectorText(grid.boxMax) + ", " + std::to_string(extent[0]) +
              " x " + std::to_string(extent[1]) + " x " + std::to_string(extent[2]) + " voxels");
-  addRow(text, "voxel size", voxelText(grid.worldFromIndex));
+  addRow(text, "voxel size",
+         grid.linear ? voxelText(grid.worldFromIndex) : "differs from place to place (a frustum)");
   addRow(text, "memory", sizeText(grid.bytes) + ", dense box " + sizeText(grid.denseBytes));
   addRow(text, "content hash", grid.contentHash.empty() ? "none for this type" : grid.contentHash);
   for (const auto& [key, value] : grid.metadata) addRow(text, key, value);
@@ -137,7 +145,7 @@ Json gridJson(const GridInfo& grid) {
   json["tiles"] = grid.tiles;
   json["box_min"] = {grid.boxMin.x, grid.boxMin.y, grid.boxMin.z};
   json["box_max"] = {grid.boxMax.x, grid.boxMax.y, grid.boxMax.z};
-  json["transform"] = transformJson(grid.worldFromIndex);
+  json["transform"] = grid.linear ? transformJson(grid.worldFromIndex) : Json(nullptr);
   json["bytes"] = grid.bytes;
   json["dense_bytes"] = grid.denseBytes;
   json["content_hash"] = grid.contentHash.empty() ? Json(nullptr) : Json(grid.contentHash);

@@ -20,6 +20,7 @@ struct GridInfo {
   uint64_t tiles = 0;    // active tiles
   glm::ivec3 boxMin{0};  // half-open box of active voxels, index space
   glm::ivec3 boxMax{0};
+  bool linear = true;  // else a frustum, which no matrix describes: worldFromIndex means nothing
   glm::dmat4 worldFromIndex{1.0};
   uint64_t bytes = 0;       // in memory
   uint64_t denseBytes = 0;  // of the active box as a dense array of the value type
@@ -37,10 +38,13 @@ struct FileInfo {
 /// Reads the file. Throws as readVdb does.
 FileInfo inspectFile(const std::string& path);
 
+/// "12.3 MiB".
+std::string sizeText(uint64_t bytes);
+
 std::string infoAsText(const FileInfo& info);
 /// The keys of DESIGN.md, section 1: path, grids[{name, type, class, …}]; an object for one file, a list of
-/// them for more. Boxes are half-open; the transform is the rows of a matrix for column vectors; a type
-/// without a hash has null.
+/// them for more. Boxes are half-open; the transform is the rows of a matrix for column vectors, null where
+/// it is not linear; a type without a hash has null.
 std::string infoAsJson(const std::vector<FileInfo>& infos);
 
 }  // namespace nephele

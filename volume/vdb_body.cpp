@@ -18,8 +18,6 @@ namespace nephele {
 namespace {
 
 constexpr uint32_t kOldestWalked = 222;
-// Compression flags of a grid, in OpenVDB's io/Compression.h.
-constexpr uint32_t kZip = 1, kActiveMask = 2, kBlosc = 4;
 
 /// A type of value by its tree's name.
 struct ValueType {

@@ -152,7 +152,12 @@ VdbHeader readVdbHeader(const std::string& path) {
   if (count < 0) file.fail("is damaged: it counts " + std::to_string(count) + " grids");
   for (int32_t i = 0; i < count; ++i) {
     header.grids.push_back(readEntry(file));
-    file.seek(header.grids.back().end);
+    VdbGridEntry& entry = header.grids.back();
+    if (header.fileVersion >= kNoCompressionFlagSince && entry.end - entry.grid >= sizeof(uint32_t)) {
+      file.seek(entry.grid);
+      entry.compression = file.read<uint32_t>();
+    }
+    file.seek(entry.end);
   }
   return header;
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,11 @@ struct VdbGridEntry {
   uint64_t grid = 0;        // with the grid itself (compression, metadata, transform, topology) from here on
   uint64_t blocks = 0;      // and its leaves' buffers from here
   uint64_t end = 0;
+  std::optional<uint32_t> compression;  // kZip, kActiveMask, kBlosc; nullopt before version 222
 };
+
+/// Compression flags of a grid, in OpenVDB's io/Compression.h.
+inline constexpr uint32_t kZip = 1, kActiveMask = 2, kBlosc = 4;
 
 struct VdbHeader {
   uint32_t fileVersion = 0;

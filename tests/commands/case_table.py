@@ -196,7 +196,8 @@ BAKE = [
     says("bake pipeline.yaml --only bell", 2, "bell", "did you mean 'ball'?"),
     says("bake pipeline.yaml --frames 3-1", 2, "--frames must read A-B"),
     says("bake pipeline.yaml --shard 3/2", 2, "--shard must read I/N"),
-    says("bake check good.vdb", 2, "not built yet"),
+    says("bake check good.vdb --for maya", 2, "no rules are known for 'maya'"),
+    says("bake check good.vdb --for bender", 2, "did you mean 'blender'?"),
     says("bake diff good.vdb nowhere.vdb", 2, "nowhere.vdb: error: no such file"),
     says("bake diff good.vdb good.vdb --tolerance some", 2, "'some' is no tolerance"),
     prints("bake diff good.vdb good.vdb --tolerance 0", "largest difference 0 "),
@@ -215,6 +216,17 @@ BAKE = [
     says("bake info cut_by_one.vdb", 2, "cut_by_one.vdb: error:"),
     Case("bake info flipped.vdb", (0, 1, 2), note="no crash, no hang"),
     prints("bake info vel_only.vdb", "vel"),
+    # files held to the rules
+    prints("bake check good.vdb", "good: 13 yes"),
+    prints("bake check good.vdb --for houdini --json", '"good": true', '"holds": "not asked"'),
+    says("bake check nowhere.vdb", 2, "nowhere.vdb: error: no such file"),
+    says("bake check cut_in_data.vdb", 2, "cut_in_data.vdb: error:"),
+    Case("bake check flipped.vdb", (0, 1, 2, 3), note="no crash, no hang"),
+    says("bake check text.vdb good.vdb empty.vdb", 2, "text.vdb: error:", "empty.vdb: error:", stdout=("good.vdb",),
+         note="the others are checked"),
+    says("bake check vel_only.vdb", 3, stdout=("there is no grid 'density'",)),
+    says("bake check level_set.vdb", 3, stdout=("there is no grid 'density'",)),
+    says("bake check not_finite.vdb", 3, stdout=("are not finite",)),
 ]
 
 

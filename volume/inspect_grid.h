@@ -1,0 +1,12 @@
+// One grid in memory as `info` tells it. Includes OpenVDB: for volume alone.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include "volume/info.h"
+
+namespace nephele {
+
+GridInfo inspectGrid(const openvdb::GridBase& grid);
+
+}  // namespace nephele
