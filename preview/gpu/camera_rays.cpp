@@ -148,7 +148,10 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   const double least = std::min(wider * march.cacheVoxels, kBlock);
   const bool isThin = depth > 0.0 && depth * least <= kThinCell;  // 0: the mean density is not known
   const double cell = isThin ? std::min(kThinCell / depth, kBlock) : least;
-  const double skyCell = std::min(wider * march.skyCacheVoxels, kBlock);
+  // Openness falls over a free way, however few pixels show it: factors hold where its samples stay.
+  const double skyVoxels =
+      open ? std::max(1.0, march.skyCacheVoxels / scaleOf(frame)) : wider * march.skyCacheVoxels;
+  const double skyCell = std::min(skyVoxels, kBlock);
   const auto samples = [](double spacing) {
     return 1 + std::max(1, static_cast<int>(std::lround(kBlock / spacing)));
   };

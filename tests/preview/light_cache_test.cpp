@@ -38,6 +38,24 @@ TEST(LightCache, FarOctavesSeeThroughWhatHidesTheSun) {
   EXPECT_NEAR(double{pixels[0].radiance.x} / expected, 1.0, 0.02);
 }
 
+TEST(LightCache, OpennessKeepsItsSamplesWhereAPictureIsSmall) {
+  constexpr int kEdge = 32;
+  const BrickVolume bricks = bricksFromDense(std::vector<float>(size_t{kEdge} * kEdge * kEdge, 1.0f),
+                                             glm::ivec3(kEdge), glm::ivec3(0), glm::dmat4(1.0));
+  ViewedScene view;
+  view.camera.target = glm::dvec3(0.5 * kEdge);
+  view.camera.position = glm::dvec3(-3.0 * kEdge, 0.5 * kEdge, 0.5 * kEdge);
+  view.medium = {{0.5, 0.5, 0.5}, {0.0, 0.0, 0.0}, 0.0};
+  view.scene.environment.constant = {1.0, 1.0, 1.0};
+  const auto samples = [&](int height, double d) {
+    view.scene.octaves = {2, 0.5, 0.5, 0.5, d};
+    return marchParameters(view, bricks, height, height, 0, false).cacheShape.y;
+  };
+  constexpr int kLarge = 1000, kSmall = 8;
+  EXPECT_LT(samples(kSmall, 0.0), samples(kLarge, 0.0));
+  EXPECT_EQ(samples(kSmall, 1.0), samples(kLarge, 1.0));
+}
+
 TEST(LightCache, OrdersLoseWhatAnOpenPlaceLetsOut) {
   // A ball 6 optical depths across, by its middle: the order beyond the first, light of which nothing is
   // hidden (a = 0), adds 1/(4π) ∫ σ e^(−σ s) (1 − d E(r)) ds, r the distance from the centre and E the mean
