@@ -59,6 +59,11 @@ class Desk {
 
  private:
   void act(Action action);
+  /// Closes what is open, the window last.
+  void quit();
+  void otherLook();
+  /// So many rows on in the table of views, round.
+  void turnViews(int by);
   void actOnCamera(Action action);
   void actOnFiles(Action action);
   void takeKey(const KeyPress& press);

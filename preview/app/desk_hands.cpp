@@ -92,34 +92,44 @@ void Desk::takeKey(const KeyPress& press) {
   if (const auto action = actionOf(press)) act(*action);
 }
 
+void Desk::quit() {
+  if (state_.listOpen)
+    state_.listOpen = false;
+  else if (state_.help)
+    state_.help = false;
+  else
+    window_.close();
+}
+
+void Desk::otherLook() {
+  const Settings before = state_.settings;
+  Look& look = state_.settings.scene.look;
+  look = look == Look::report ? Look::physical : Look::report;
+  change(before);
+  history_.rest();
+  say(describeLight(request(state_.settings).view));
+}
+
+void Desk::turnViews(int by) {
+  state_.view = static_cast<View>((static_cast<int>(state_.view) + by) % kViewCount);
+  say("view: " + std::string(rowOf(state_.view).name));
+  restart();
+}
+
 void Desk::act(Action action) {
   switch (action) {
     case Action::quit:
-      if (state_.listOpen)
-        state_.listOpen = false;
-      else if (state_.help)
-        state_.help = false;
-      else
-        window_.close();
+      quit();
       break;
-    case Action::look: {
-      const Settings before = state_.settings;
-      Look& look = state_.settings.scene.look;
-      look = look == Look::report ? Look::physical : Look::report;
-      change(before);
-      history_.rest();
-      say(describeLight({state_.settings.scene, orbit_.camera(), state_.settings.medium, state_.up,
-                         state_.settings.environmentMap}));
+    case Action::look:
+      otherLook();
       break;
-    }
     case Action::nextView:
-    case Action::previousView: {
-      const int by = action == Action::nextView ? 1 : kViewCount - 1;
-      state_.view = static_cast<View>((static_cast<int>(state_.view) + by) % kViewCount);
-      say("view: " + std::string(rowOf(state_.view).name));
-      restart();
+      turnViews(1);
       break;
-    }
+    case Action::previousView:
+      turnViews(kViewCount - 1);
+      break;
     case Action::split:
       split();
       break;

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "base/enlarge.h"
 #include "base/error.h"
 #include "base/front.h"
 #include "base/progress.h"
@@ -54,35 +55,6 @@ PictureRequest requestOf(const SweepOptions& options, unsigned samples, unsigned
   request.quiet = true;
   request.bounces = options.bounces;
   return request;
-}
-
-/// Each plane, linear between the centres of the smaller picture's pixels and held beyond them.
-Picture enlarged(const Picture& small, int times) {
-  if (times == 1) return small;
-  Picture large;
-  large.width = small.width * times;
-  large.height = small.height * times;
-  for (const std::string& name : small.names) large.add(name);
-  const auto place = [times](int at, int length) {
-    return std::clamp((at + 0.5) / times - 0.5, 0.0, length - 1.0);
-  };
-  for (int y = 0; y < large.height; ++y)
-    for (int x = 0; x < large.width; ++x) {
-      const double fromX = place(x, small.width), fromY = place(y, small.height);
-      const int x0 = static_cast<int>(fromX), y0 = static_cast<int>(fromY);
-      const int x1 = std::min(x0 + 1, small.width - 1), y1 = std::min(y0 + 1, small.height - 1);
-      for (size_t plane = 0; plane < small.planes.size(); ++plane) {
-        const auto at = [&](int column, int row) {
-          return double{small.planes[plane][static_cast<size_t>(row) * static_cast<size_t>(small.width) +
-                                            static_cast<size_t>(column)]};
-        };
-        const double above = std::lerp(at(x0, y0), at(x1, y0), fromX - x0),
-                     below = std::lerp(at(x0, y1), at(x1, y1), fromX - x0);
-        large.planes[plane][static_cast<size_t>(y) * static_cast<size_t>(large.width) +
-                            static_cast<size_t>(x)] = static_cast<float>(std::lerp(above, below, fromY - y0));
-      }
-    }
-  return large;
 }
 
 /// A picture of one sample a pixel that nothing is taken of: shaders are built by then. The reference has
@@ -143,6 +115,99 @@ std::vector<CostAndError> costsOf(const std::vector<Measured>& points) {
   return costs;
 }
 
+/// One sweep as it goes on: view by view, in each all settings that still fit into the time.
+class Sweep {
+ public:
+  Sweep(const BrickVolume& bricks, const ViewedScene& given, const SweepOptions& options)
+      : options_(options),
+        views_(viewsFor(given)),
+        methods_(bricks, options_.methods),
+        truthSeconds_(kTruthShare * options.seconds / static_cast<double>(views_.size())) {
+    std::vector<std::string> names;
+    for (const MethodRow& row : options_.methods)
+      if (options_.chartsTruth || row.name != kTruth) names.emplace_back(row.name);
+    result_.settings = settingsFor(names, given.scene);
+    lastCost_.assign(result_.settings.size(), 0.0);
+    tried_.assign(result_.settings.size(), true);
+  }
+
+  SweepResult run() {
+    Progress progress("measuring", views_.size() * result_.settings.size(), options_.quiet);
+    for (const SweepView& view : views_) look(view, progress);
+    result_.all = overViews(result_.single, result_.settings.size(), viewsDone_);
+    result_.front = paretoFront(result_.all);
+    result_.knee = kneeOf(result_.all, result_.front);
+    return std::move(result_);
+  }
+
+ private:
+  static constexpr double kTruthShare = 0.2;  // of all the time
+  /// Seconds per guessed cost, by method and kind of light.
+  using Rates = std::map<std::pair<std::string, bool>, double>;
+
+  void look(const SweepView& view, Progress& progress) {
+    double expected = truthSeconds_;
+    for (size_t s = 0; s < lastCost_.size(); ++s) expected += tried_[s] ? lastCost_[s] : 0.0;
+    if (viewsDone_ > 0 && expected > options_.seconds - secondsSince(start_)) {
+      result_.leftOut.push_back("the view '" + view.name + "', for want of time");
+      return;
+    }
+    const Picture truth = truthWithin(methods_, view.view, options_, truthSeconds_);
+    if (viewsDone_ == 0) result_.shots.push_back({"truth", truth});
+    Rates rates;
+    for (size_t s = 0; s < result_.settings.size(); ++s) {
+      progress.advance();
+      if (tried_[s] && fits(s, rates)) measure(s, view, truth, rates);
+    }
+    ++viewsDone_;
+  }
+
+  /// Whether a setting can be measured in the time that is left; else it is left out, and named.
+  bool fits(size_t s, Rates& rates) {
+    const Setting& setting = result_.settings[s];
+    const bool divides = options_.width % setting.coarser == 0 && options_.height % setting.coarser == 0;
+    const double needed = rates[rateOf(setting)] * guessedCost(setting);
+    // The first view may take half of the time: others are to follow.
+    const bool late = viewsDone_ == 0 && secondsSince(start_) + needed > 0.5 * options_.seconds;
+    if (divides && !late) return true;
+    tried_[s] = false;
+    result_.leftOut.push_back(
+        "'" + setting.name +
+        (divides ? "', for want of time" : "': the picture's edges are no multiples of it"));
+    return false;
+  }
+
+  void measure(size_t s, const SweepView& view, const Picture& truth, Rates& rates) {
+    const Setting& setting = result_.settings[s];
+    const auto before = Clock::now();
+    Method& method = methods_.at(setting.method);
+    const ViewedScene set = withSetting(view.view, setting);
+    warmUp(method, set, options_, setting);
+    PictureCost cost;
+    const Picture picture =
+        enlarged(method.render(set, requestOf(options_, setting.samples, 0, setting.coarser), cost),
+                 options_.width, options_.height);
+    const double pixels = 1.0 / (setting.coarser * setting.coarser);  // rendered, a pixel of the picture
+    result_.single.push_back({s, view.name, cost.milliseconds, pixels * cost.densitySamplesPerPixel,
+                              compareWithHalves(picture, truth)});
+    lastCost_[s] = secondsSince(before);
+    rates[rateOf(setting)] = 1e-3 * cost.milliseconds / guessedCost(setting);
+    if (viewsDone_ == 0) result_.shots.push_back({setting.name, picture});
+  }
+
+  static Rates::key_type rateOf(const Setting& setting) { return {setting.method, setting.march.lightCache}; }
+
+  const Clock::time_point start_ = Clock::now();
+  const SweepOptions& options_;
+  const std::vector<SweepView> views_;
+  Methods methods_;
+  const double truthSeconds_;  // that a view's truth may take
+  SweepResult result_;
+  std::vector<double> lastCost_;  // of each setting, seconds under the view before
+  std::vector<bool> tried_;       // whether it is still
+  size_t viewsDone_ = 0;
+};
+
 }  // namespace
 
 std::vector<size_t> paretoFront(const std::vector<Measured>& points) {
@@ -154,73 +219,9 @@ size_t kneeOf(const std::vector<Measured>& points, const std::vector<size_t>& fr
 }
 
 SweepResult sweep(const BrickVolume& bricks, const ViewedScene& given, const SweepOptions& asked) {
-  const auto start = Clock::now();
   SweepOptions options = asked;
   if (!options.bounces && lightModelOf(given.scene, given.medium).octaveCount == 0) options.bounces = 0;
-  std::vector<std::string> names;
-  for (const MethodRow& row : options.methods)
-    if (options.chartsTruth || row.name != kTruth) names.emplace_back(row.name);
-  SweepResult result;
-  result.settings = settingsFor(names, given.scene);
-  const std::vector<SweepView> views = viewsFor(given);
-  Methods made(bricks, options.methods);
-  std::vector<double> lastCost(result.settings.size(), 0.0);  // seconds under the view before
-  std::vector<bool> tried(result.settings.size(), true);
-  size_t viewsDone = 0;
-  constexpr double kTruthShare = 0.2;
-  Progress progress("measuring", views.size() * result.settings.size(), options.quiet);
-  for (const SweepView& view : views) {
-    const double left = options.seconds - secondsSince(start);
-    double expected = 0.0;
-    for (size_t s = 0; s < lastCost.size(); ++s) expected += tried[s] ? lastCost[s] : 0.0;
-    if (viewsDone > 0 &&
-        expected + kTruthShare * options.seconds / static_cast<double>(views.size()) > left) {
-      result.leftOut.push_back("the view '" + view.name + "', for want of time");
-      continue;
-    }
-    const Picture truth = truthWithin(made, view.view, options,
-                                      kTruthShare * options.seconds / static_cast<double>(views.size()));
-    if (viewsDone == 0) result.shots.push_back({"truth", truth});
-    // The first view may take half of the time: others are to follow.
-    const double until = viewsDone == 0 ? 0.5 * options.seconds : options.seconds;
-    std::map<std::pair<std::string, bool>, double>
-        rates;  // seconds per guessed cost, by method and kind of light
-    for (size_t s = 0; s < result.settings.size(); ++s) {
-      progress.advance();
-      if (!tried[s]) continue;
-      const Setting& setting = result.settings[s];
-      if (options.width % setting.coarser != 0 || options.height % setting.coarser != 0) {
-        tried[s] = false;
-        result.leftOut.push_back("'" + setting.name + "': the picture's edges are no multiples of it");
-        continue;
-      }
-      double& rate = rates[{setting.method, setting.march.lightCache}];
-      if (viewsDone == 0 && secondsSince(start) + rate * guessedCost(setting) > until) {
-        tried[s] = false;
-        result.leftOut.push_back("'" + setting.name + "', for want of time");
-        continue;
-      }
-      const auto before = Clock::now();
-      Method& method = made.at(setting.method);
-      const ViewedScene set = withSetting(view.view, setting);
-      warmUp(method, set, options, setting);
-      PictureCost cost;
-      const Picture picture = enlarged(
-          method.render(set, requestOf(options, setting.samples, 0, setting.coarser), cost), setting.coarser);
-      const double pixels = 1.0 / (setting.coarser * setting.coarser);  // rendered, a pixel of the picture
-      Measured measured{s, view.name, cost.milliseconds, pixels * cost.densitySamplesPerPixel,
-                        compareWithHalves(picture, truth)};
-      result.single.push_back(measured);
-      lastCost[s] = secondsSince(before);
-      rate = 1e-3 * cost.milliseconds / guessedCost(setting);
-      if (viewsDone == 0) result.shots.push_back({setting.name, picture});
-    }
-    ++viewsDone;
-  }
-  result.all = overViews(result.single, result.settings.size(), viewsDone);
-  result.front = paretoFront(result.all);
-  result.knee = kneeOf(result.all, result.front);
-  return result;
+  return Sweep(bricks, given, options).run();
 }
 
 }  // namespace nephele
