@@ -69,9 +69,10 @@ struct March {
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/light_cache.glsl"
 #include "shaders/shared/light_cache_fill.glsl"
-#include "shaders/shared/march.glsl"
 #include "shaders/shared/walk.glsl"
-// After the march, whose types it takes.
+// After the walk, whose types it takes.
+#include "shaders/shared/march.glsl"
+// After the march, likewise.
 #include "shaders/shared/dda.glsl"
 #include "shaders/shared/stage_shapes.glsl"
 // After its shapes.

@@ -31,6 +31,9 @@ NPH_FN float columnThatHides(float smallest, int orders) {
   return extinction > 0.0f ? min(-log(smallest) / extinction, 1e30f) : 1e30f;
 }
 
+// Further than any medium.
+NPH_CONST float kSunReach = 3.0e38f;
+
 // A light or, beyond the last one, the sky, as seen from a point.
 struct Lighting {
   vec3 toLight;       // unit, world axes
@@ -43,7 +46,7 @@ NPH_FN Lighting lightingFrom(int i, vec3 position) {
   Lighting l;
   l.toLight = vec3(params.lights[i].direction);
   l.toLightIndex = vec3(params.lights[i].directionIndex);
-  l.reach = 3.0e38f;
+  l.reach = kSunReach;
   l.irradiance = vec3(params.lights[i].power);
   if (NPH_POINTS && int(params.lights[i].direction.w) == kLightPoint) {
     vec3 apart = vec3(params.lights[i].directionIndex) - position;
@@ -83,20 +86,25 @@ NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
   }
   l.toLightIndex = l.toLight.x * vec3(params.indexFromWorldX) + l.toLight.y * vec3(params.indexFromWorldY) +
                    l.toLight.z * vec3(params.indexFromWorldZ);
-  l.reach = 3.0e38f;
+  l.reach = kSunReach;
   float density = 0.5f * phaseFunction(l.toLight, ray, lobes) + 0.5f * phaseIsotropic();
   if (map) density = 0.5f * density + 0.5f * mapDensity(l.toLight);
   l.irradiance = environmentRadiance(l.toLight) / density;
   return l;
 }
 
-// ∫ ρ ds from a point to a light, by the way that the scene chooses: marched, or the chord at the mean density.
-NPH_FN float columnTowards(vec3 position, vec3 direction, float reach, float enough, float start, NPH_INOUT(vec4) cost) {
+// ∫ ρ ds from a point of density `rho` to a light, by the way that the scene chooses: marched, or the chord at the mean density.
+// What is read at the share `start` of each step errs by (½ − start) Σ ds Δρ, which summation by parts makes of what is known: the
+// density here, none where the medium ends, and the steps' growth. Without it light would come out too bright by its mean over
+// starts, since e^(−x) is convex. At a light of limited reach the density is not known.
+NPH_FN float columnTowards(vec3 position, float rho, vec3 direction, float reach, float enough, float start, NPH_INOUT(vec4) cost) {
   if (params.chordRadii.w > 0.0f)
     return params.chordCentre.w *
            ellipsoidChord(position, direction, vec3(params.chordCentre), vec3(params.chordRadii), reach);
   vec2 steps = vec2(params.shadow.x * voxelAt(position, 1.0f), params.shadow.y);
-  return columnDensity(position, direction, reach, enough, steps, start, cost);
+  float column = columnDensity(position, direction, reach, enough, steps, start, cost);
+  float ends = rho * steps.x / length(direction) + (1.0f - 1.0f / steps.y) * column;
+  return reach < kSunReach ? column : max(column + (start - 0.5f) * ends, 0.0f);
 }
 
 // What powder leaves of the light that a place of density `rho` scatters.
@@ -106,10 +114,10 @@ NPH_FN float powderAt(vec3 position, float rho) {
   return powderFactor(params.powder.x, min(rho * params.powder.y, 1.0f), height);
 }
 
-// Source function at a point: Σ over lights and the sky, per unit density, before σ_s. `place` counts the points lit along
+// Source function at a point of density `rho`: Σ over lights and the sky, per unit density, before σ_s. `place` counts the points lit along
 // the ray, `number` the picture's samples. What the light cache holds is taken from there: NPH_CACHED is true where it has the
 // lights' columns, NPH_NEAR where the way to it is marched; NPH_SKY is 0 where there is no sky, 1 where the cache has it, 2 where it is marched for.
-NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
+NPH_FN vec3 inScattering(vec3 position, float rho, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
                          NPH_INOUT(vec4) cost) {
   vec3 sum = vec3(0.0f);
   vec3 again = NPH_OPEN ? scatteredAgain(opennessAt(position)) : vec3(params.octaves.y);
@@ -128,7 +136,7 @@ NPH_FN vec3 inScattering(vec3 position, vec3 ray, float enough, uint place, uint
     if (NPH_CACHED && !sky) {
       column = lightColumn(i, position, l.toLightIndex, l.reach, start, cost);
     } else {
-      column = columnTowards(position, l.toLightIndex, l.reach, enough, start, cost);
+      column = columnTowards(position, rho, l.toLightIndex, l.reach, enough, start, cost);
     }
     sum += l.irradiance * scatteredByOrders(l.toLight, ray, column, again);
     done += 1;

@@ -68,7 +68,7 @@ NPH_FN vec3 stageShade(StageSurface s, vec3 p, vec3 position, vec3 normal, vec3 
     float facing = dot(normal, l.toLight);
     float through = facing > 0.0f ? stageShadow(p, l.toLight, l.reach) : 0.0f;
     float reach = through > 0.0f ? l.reach : 0.0f;
-    float column = columnTowards(position, l.toLightIndex, reach, enough, start, cost);
+    float column = columnTowards(position, 0.0f, l.toLightIndex, reach, enough, start, cost);
     vec3 halfway = normalize(l.toLight - ray);
     float highlight = s.specular * pow(max(dot(normal, halfway), 1e-6f), s.shininess);
     sum += (through / kPi) * l.irradiance * lessened(column * vec3(params.sigmaT)) *

@@ -81,7 +81,7 @@ TEST(GlLevels, WhatAPictureCannotResolveChangesItLittle) {
     EXPECT_LT(alone.relativeRmse, 0.06);
     // Steps follow the optical depth and thin voxels have a coarse light cache, at the finest level as well.
     EXPECT_GT(fine.densities, coarse.densities);
-    EXPECT_GT(fineMarched.densities, 1.3 * coarseMarched.densities);
+    EXPECT_GT(fineMarched.densities, 1.1 * coarseMarched.densities);
   }
 }
 
@@ -169,7 +169,7 @@ TEST(GlLevels, CpuAndGpuAgreeOnMixedLevels) {
                  "return least;"}}),
         kGate)
         << "steps are in voxels of the level being read";
-    EXPECT_GT(parity({{"shared/march.glsl", "size = float(edge);", "size = 1.0f;"}}), kGate);
+    EXPECT_GT(parity({{"shared/march.glsl", "s.size = float(edge);", "s.size = 1.0f;"}}), kGate);
   }
 }
 

@@ -76,6 +76,44 @@ TEST(SharedMarch, SingleScatteringBackLitSlabHasItsClosedForm) {
   EXPECT_NEAR(double{result.radiance.z} / double{result.radiance.x}, 2.0, 1e-5);
 }
 
+/// Density that falls evenly from 1 at x = 0 to 0 at x = 208.
+struct FallingBricks : NoCache {
+  uvec2 word(ivec3 brick) const { return uvec2(kMostWord << 24u | uint(brick.x), 0u); }
+  float density(uvec2 word, vec3 kept, ivec3) const {
+    return 1.0f - (8.0f * float(word.x & 4095u) + kept.x) / 208.0f;
+  }
+};
+
+TEST(SharedMarch, ColumnsTowardsASunDoNotDependOnWhereStepsAreRead) {
+  const FallingBricks bricks;
+  for (const float growth : {1.0f, 1.1f, 1.3f}) {
+    auto p = parametersFor(0.0f, 208.0f, 1.0f);
+    p.shadow = vec4(4.0f, growth, 1.0f, 1.0f);
+    March<FallingBricks> march{p, &bricks};
+    // ∫ 1 − x/208 dx from 48 on: 160 is a whole number of even steps.
+    constexpr double kExact = 160.0 * 160.0 / (2.0 * 208.0);
+    double least = 1e30, most = 0.0, plain = 0.0;
+    for (int i = 0; i < 16; ++i) {
+      const float start = (static_cast<float>(i) + 0.5f) / 16.0f;
+      vec4 cost(0.0f);
+      const vec3 from(48.0f, 104.0f, 104.0f), along(1.0f, 0.0f, 0.0f);
+      const double column =
+          double{march.columnTowards(from, 160.0f / 208.0f, along, march.kSunReach, 1e30f, start, cost)};
+      least = std::min(least, column);
+      most = std::max(most, column);
+      plain = std::max(plain, double{march.columnDensity(from, along, march.kSunReach, 1e30f,
+                                                         vec2(4.0f, growth), start, cost)});
+    }
+    std::printf("steps growing by %.1f: columns %.5f to %.5f of the exact one, as read up to %.3f\n",
+                double{growth}, least / kExact, most / kExact, plain / kExact);
+    // The formula is exact for even steps. Growing ones are cut at the far end, and their first counts twice.
+    const double allowed = growth == 1.0f ? 1e-5 : 0.25 * (plain / kExact - 1.0);
+    EXPECT_NEAR(least / kExact, 1.0, allowed) << growth;
+    EXPECT_NEAR(most / kExact, 1.0, allowed) << growth;
+    EXPECT_GT(plain / kExact, 1.02) << growth;
+  }
+}
+
 TEST(SharedMarch, PointLightFallsWithTheSquareOfItsDistance) {
   const FullBricks bricks;
   auto p = parametersFor(100.0f, 101.0f, 1e-6f);
