@@ -1,9 +1,9 @@
 // What the rules ask of a file, gathered in one reading. Depends on base and OpenVDB.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 
+#include "base/frame_name.h"
 #include "volume/check.h"
 #include "volume/inspect_grid.h"
 #include "volume/vdb_file.h"
@@ -71,25 +71,17 @@ GridFacts factsOf(const openvdb::GridBase& grid) {
   return facts;
 }
 
-/// A file's name without ending, in two: what comes before the digits at its end, and these.
-std::pair<std::string, std::string> stemAndDigits(const std::filesystem::path& path) {
-  const std::string name = path.stem().string();
-  size_t end = name.size();
-  while (end > 0 && std::isdigit(static_cast<unsigned char>(name[end - 1])) != 0) --end;
-  return {name.substr(0, end), name.substr(end)};
-}
-
 std::vector<std::string> framesBeside(const std::string& file) {
   const std::filesystem::path path(file);
-  const auto [stem, digits] = stemAndDigits(path);
-  if (digits.empty()) return {};
+  const Stem own = stemOf(path.stem().string());
+  if (own.digits.empty()) return {};
   std::vector<std::string> frames;
   std::error_code error;
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   for (const auto& beside : std::filesystem::directory_iterator(folder, error)) {
     if (beside.path().extension() != path.extension()) continue;
-    const auto parts = stemAndDigits(beside.path());
-    if (parts.first == stem && !parts.second.empty()) frames.push_back(parts.second);
+    const Stem stem = stemOf(beside.path().stem().string());
+    if (stem.head == own.head && !stem.digits.empty()) frames.push_back(stem.digits);
   }
   std::sort(frames.begin(), frames.end(), [](const std::string& a, const std::string& b) {
     const auto number = [](const std::string& text) {

@@ -1,13 +1,13 @@
 // The rules, numbered as they are printed: what a .vdb must be to open well in Blender, Houdini and the rest.
-// Depends on check.h and vdb_header.h; knows no OpenVDB.
+// Depends on base, check.h and vdb_header.h; knows no OpenVDB.
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstdint>
 #include <limits>
 #include <set>
-#include <sstream>
 
+#include "base/figures.h"
 #include "volume/check.h"
 #include "volume/provenance.h"
 #include "volume/vdb_header.h"
@@ -46,6 +46,7 @@ struct Rule {
   std::string otherwise;  // the sentence where it finds nothing to say
 };
 
+constexpr int kDigits = 6;  // of figures in sentences
 constexpr const char* kDensity = "density";
 constexpr const char* kFloatTree = "Tree_float_5_4_3";
 constexpr const char* kVectorTree = "Tree_vec3s_5_4_3";
@@ -56,12 +57,6 @@ std::string lower(std::string text) {
 }
 
 std::string quoted(const GridFacts& grid) { return "'" + grid.info.name + "'"; }
-
-std::string number(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
 
 const GridFacts* densityOf(const FileFacts& facts) {
   for (const GridFacts& grid : facts.grids)
@@ -96,7 +91,7 @@ void density(const FileFacts& facts, const Audience&, Finding& found) {
   else if (gridClass != "fog volume")
     found.no("'density' is a " + gridClass + ", not a fog volume");
   if (grid->background.value_or(0.0) != 0.0)
-    found.no("outside of its voxels 'density' is " + number(*grid->background) + ", not 0");
+    found.no("outside of its voxels 'density' is " + number(*grid->background, kDigits) + ", not 0");
 }
 
 void otherGrids(const FileFacts& facts, const Audience& audience, Finding& found) {
@@ -164,21 +159,19 @@ void format(const FileFacts& facts, const Audience&, Finding& found) {
 }
 
 void scale(const FileFacts& facts, const Audience& audience, Finding& found) {
-  constexpr double kDropped = 0.001, kMostFaint = 0.1, kPercent = 100.0;
+  constexpr double kDropped = 0.001, kMostFaint = 0.1;
   const GridFacts* grid = densityOf(facts);
   if (!audience.blender) return found.notAsked("of Blender alone");
   if (grid == nullptr || !(grid->mass > 0.0)) return found.notAsked("there is no density");
   const double faint = grid->faintMass / grid->mass;
-  std::ostringstream share;
-  share.precision(3);
-  share << kPercent * faint << "% of the mass lies below " << kFaintDensity;
+  const std::string share = percent(faint) + " of the mass lies below " + number(kFaintDensity);
   if (grid->largest <= kDropped)
-    found.no("the largest density is " + number(grid->largest) +
+    found.no("the largest density is " + number(grid->largest, kDigits) +
              "; Blender's viewport draws nothing below 0.001");
   else if (faint > kMostFaint)
-    found.note(share.str() + "; Blender's viewport draws nothing below 0.001");
+    found.note(share + "; Blender's viewport draws nothing below 0.001");
   else
-    found.yes("largest density " + number(grid->largest) + "; " + share.str());
+    found.yes("largest density " + number(grid->largest, kDigits) + "; " + share);
 }
 
 void creator(const FileFacts& facts, const Audience& audience, Finding& found) {

@@ -1,9 +1,11 @@
-// Frames found beside a file. Depends on the file system.
+// Frames found beside a file. Depends on base and the file system.
 #include "preview/app/sequence_files.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+
+#include "base/frame_name.h"
 
 namespace nephele {
 namespace {
@@ -11,19 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMostDigits = 9;  // numbers stay ints
-
-bool isDigit(char c) { return c >= '0' && c <= '9'; }
-
-/// A stem cut before its trailing digits.
-struct Stem {
-  std::string head, digits;
-};
-
-Stem cut(const std::string& stem) {
-  size_t first = stem.size();
-  while (first > 0 && isDigit(stem[first - 1])) --first;
-  return {stem.substr(0, first), stem.substr(first)};
-}
 
 bool hasFrameNumber(const Stem& stem) { return !stem.digits.empty() && stem.digits.size() <= kMostDigits; }
 
@@ -43,7 +32,7 @@ bool sameSequence(const Stem& stem, const Stem& model) {
 
 std::vector<SequenceFrame> findSequence(const std::string& path) {
   const fs::path file(path);
-  const Stem model = cut(file.stem().string());
+  const Stem model = stemOf(file.stem().string());
   if (!hasFrameNumber(model)) return {{0, path}};
   std::vector<SequenceFrame> frames{{std::stoi(model.digits), path}};
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
@@ -51,7 +40,7 @@ std::vector<SequenceFrame> findSequence(const std::string& path) {
   for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
     const fs::path name = entry->path().filename();
     if (name.extension() != file.extension() || name == file.filename()) continue;
-    const Stem stem = cut(name.stem().string());
+    const Stem stem = stemOf(name.stem().string());
     if (sameSequence(stem, model))
       frames.push_back({std::stoi(stem.digits), (file.parent_path() / name).string()});
   }

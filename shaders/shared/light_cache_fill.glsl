@@ -53,7 +53,7 @@ NPH_FN void skyToCache(vec3 position, vec2 turn, NPH_OUT(vec4) sky0, NPH_OUT(vec
     toSkies[i] = toSky;
     vec3 toSkyIndex = toSky.x * vec3(params.indexFromWorldX) + toSky.y * vec3(params.indexFromWorldY) +
                       toSky.z * vec3(params.indexFromWorldZ);
-    columns[i] = columnDensity(position, toSkyIndex, 3.0e38f, enough, steps, 0.5f, cost);
+    columns[i] = columnDensity(position, toSkyIndex, kSunReach, enough, steps, 0.5f, cost);
     openness += lessened(columns[i] * vec3(params.sigmaT)) * (1.0f / float(kSkyDirections));
   }
   vec3 again = NPH_OPEN ? scatteredAgain(openness) : vec3(params.octaves.y);

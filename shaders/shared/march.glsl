@@ -72,7 +72,7 @@ NPH_FN Ray rayThrough(vec2 at) {
   r.origin = vec3(params.originCorner) + at.x * vec3(params.originDx) + at.y * vec3(params.originDy);
   r.direction = (vec3(params.directionCorner) + at.x * vec3(params.directionDx) + at.y * vec3(params.directionDy)) / stretch;
   r.before = params.originCorner.w * stretch;
-  r.reach = 3.0e38f;
+  r.reach = kSunReach;
   return r;
 }
 
