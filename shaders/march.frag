@@ -84,7 +84,8 @@ void main() {
 #endif
   vec3 behind = environmentBehind(vec2(pixel) + subPixel, result.opticalDepth);
   vec3 transmittance = exp(-result.opticalDepth);
-  outRadiance = vec4(result.radiance + behind, 1.0 - (transmittance.r + transmittance.g + transmittance.b) / 3.0);
+  // Of what is hidden, not of what is left: a driver's third of 1, three times, may be more than 1.
+  outRadiance = vec4(result.radiance + behind, dot(vec3(1.0) - transmittance, vec3(1.0 / 3.0)));
 #if NPH_METHOD == 1
   // Every pixel has a sample without medium already.
   outRadiance.rgb -= environmentBehind(vec2(pixel) + subPixel, vec3(0.0));

@@ -3,7 +3,7 @@
 
 // Consecutive steps are lit together, at the place of one of them, until they take this share of the view or are this many:
 // light that is marched for is by far the dearest, and what the cache knows is cheap. The place is drawn by what each step
-// scatters, so that the mean over samples is as if each step had been lit.
+// scatters, so that the mean over samples is as if each step had been lit. Fixed steps are lit one by one.
 NPH_CONST float kLitTogetherShare = 0.1f;
 NPH_CONST float kCachedTogetherShare = 0.02f;
 NPH_CONST int kLitTogetherSteps = 8;
@@ -140,7 +140,7 @@ NPH_FN LitGroup noneLit(float draw) {
 }
 
 NPH_FN bool isFull(LitGroup g) {
-  return g.steps >= kLitTogetherSteps || g.taken >= (NPH_CACHED ? kCachedTogetherShare : kLitTogetherShare);
+  return g.steps >= (params.walk.z > 0.0f ? kLitTogetherSteps : 1) || g.taken >= (NPH_CACHED ? kCachedTogetherShare : kLitTogetherShare);
 }
 
 // A step at `place` that scatters `share` joins: it is the one drawn with the chance of its part of the whole, and one number

@@ -254,8 +254,7 @@ TEST(GlParity, EachMutantBreaksTheGate) {
       {"powder's 0.9 is 0.91", {powder, "0.3f, 0.9f, 0.5f", "0.3f, 0.91f, 0.5f"}, Lit::report},
       {"powder's height left out", {light, "+ params.height.w", "+ 0.0f"}, Lit::report},
       {"powder also in transmittance",
-       {march, "* vec3(params.sigmaT);",
-        "* vec3(params.sigmaT) * powderAt(position, rho);"},
+       {march, "* vec3(params.sigmaT);", "* vec3(params.sigmaT) * powderAt(position, rho);"},
        Lit::report},
       {"the ramp's power off by 1%",
        {sky, "above ? params.skyHorizon.w", "above ? 1.01f * params.skyHorizon.w"},
@@ -350,7 +349,7 @@ TEST(GlParity, LightingStepsTogetherIsRightOnTheMean) {
     ViewedScene view = parityCase(Lit::plain).view;
     view.scene.environment.constant = {0.0, 0.0,
                                        0.0};  // its directions are random and would drown the difference
-    view.scene.march.lightCache = view.scene.march.adaptive = false;
+    view.scene.march.lightCache = false;
     pass.setParameters(marchParameters(view, parityCase(Lit::plain).bricks, kWidth, kHeight, 7, true));
     const BrickAtlas atlas(parityCase(Lit::plain).bricks, pass.filter(), Texel::r32f);
     const Film film(kWidth, kHeight);
