@@ -19,7 +19,7 @@ bool cacheWidgets(MarchSettings& march) {
   constexpr double kMostDepth = 10.0;
   changed |= widgets::slider("marched above", march.cacheDepth, 0.0, kMostDepth, "%.2f a voxel", true);
   if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("optical depth of a mean voxel above which suns and points are marched for at rest");
+    ImGui::SetTooltip("optical depth of a mean voxel above which light is marched for at rest");
   changed |= widgets::slider("marched first", march.cacheNearVoxels, 0.0, kBlock, "%.1f voxels");
   changed |=
       ImGui::SliderInt("in steps", &march.cacheNearSteps, 0, kMostSteps, "%d", ImGuiSliderFlags_AlwaysClamp);

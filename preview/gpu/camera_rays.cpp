@@ -160,7 +160,8 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   // mean.
   constexpr float kMixedBy = 0.5f;
   const bool good = wider * depth <= march.cacheDepth;
-  if (lights && (good || march.alwaysCached))
+  const bool cached = lights && (good || march.alwaysCached);
+  if (cached)
     p.cache = vec4(good ? shared::kColumnsInHalves : shared::kColumnsInBytes, kMixedBy * sigmaMax,
                    static_cast<float>(march.cacheNearVoxels),
                    isThin ? 0.0f : static_cast<float>(march.cacheNearSteps));
@@ -168,7 +169,7 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   p.cacheSteps = vec4(static_cast<float>(0.5 * cell), kGrowth, static_cast<float>(0.5 * skyCell), kSkyGrowth);
   // A picture's small suns fall between the few directions that are kept.
   const int kind = static_cast<int>(p.skyUp.w);
-  const bool sky = lights && (kind == shared::kSkyConstant || kind == shared::kSkyRamp);
+  const bool sky = cached && (kind == shared::kSkyConstant || kind == shared::kSkyRamp);
   p.skySize.z = open ? shared::kOpenParts : sky ? shared::kSkyParts : 0;
   p.skySize.w = sky ? 1 : 0;
   p.cacheShape = glm::ivec4(samples(cell), sky || open ? samples(skyCell) : 0, 0, 0);

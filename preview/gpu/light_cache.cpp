@@ -67,13 +67,16 @@ bool sameSky(MarchParameters a, MarchParameters b) {
     p->sigmaS.w = p->environment.w = 0.0f;
     p->shadow = glm::vec4(0.0f, 0.0f, 0.0f, p->shadow.w);
     p->walk = p->cache = glm::vec4(0.0f);
-    p->counts.x = p->counts.w = p->brickCount.w = 0;
+    p->counts.x = p->counts.w = p->brickCount.w = p->skySize.w = 0;
     if (static_cast<int>(p->skyUp.w) != shared::kSkyNone) continue;
     p->octaves = p->phase = p->skyOpen = glm::vec4(0.0f);
     p->counts.y = 0;
   }
   return same(a, b);
 }
+
+bool asksColumns(const MarchParameters& p) { return p.cache.x > 0.0f && p.counts.x > 0; }
+bool asksSky(const MarchParameters& p) { return p.cacheShape.y > 0; }
 
 }  // namespace
 
@@ -132,18 +135,17 @@ void LightCache::shape(const BrickAtlas& atlas, const MarchParameters& parameter
     return texture;
   };
   constexpr int kUnused = 2;  // samples along the edge of what is bound and never read
-  const bool columns = parameters.cache.x > 0.0f && parameters.counts.x > 0;
+  const bool columns = asksColumns(parameters);
   columnKind_ = columns ? parameters.cache.x : 0.0f;
   columns_ = make(columns ? parameters.cacheShape.x : kUnused, columns ? parameters.counts.x : 1,
                   columnFormat(floats_, columnKind_), GL_RED);
-  const bool sky = parameters.cacheShape.y > 0;
+  const bool sky = asksSky(parameters);
   sky_ = make(sky ? parameters.cacheShape.y : kUnused, std::max(parameters.skySize.z, 1), skyFormat(floats_),
               GL_RGBA);
   checkGl("making the light cache");
 }
 
-void LightCache::findTasks(const MarchParameters& parameters, bool otherContents) {
-  const bool all = otherContents || !known_ || !sameShape(*known_, parameters);
+void LightCache::findTasks(const MarchParameters& parameters) {
   const auto begin = [&](int light) {
     for (Task& task : tasks_) {
       if (task.light != light) continue;
@@ -152,10 +154,15 @@ void LightCache::findTasks(const MarchParameters& parameters, bool otherContents
     }
     tasks_.push_back({light, blockTotal_, 0});
   };
-  if (parameters.cache.x > 0.0f)
+  if (asksColumns(parameters)) {
     for (int i = 0; i < parameters.counts.x; ++i)
-      if (all || !sameColumns(*known_, parameters, static_cast<size_t>(i))) begin(i);
-  if (parameters.cacheShape.y > 0 && (all || !sameSky(*known_, parameters))) begin(kSky);
+      if (!columnsOf_ || !sameColumns(*columnsOf_, parameters, static_cast<size_t>(i))) begin(i);
+    columnsOf_ = parameters;
+  }
+  if (asksSky(parameters)) {
+    if (!skyOf_ || !sameSky(*skyOf_, parameters)) begin(kSky);
+    skyOf_ = parameters;
+  }
 }
 
 void LightCache::fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) {
@@ -178,36 +185,35 @@ void LightCache::fill(const BrickAtlas& atlas, Task& task, uint32_t blocks) {
   task.nextBlock = (task.nextBlock + blocks) % blockTotal_;
 }
 
-MarchParameters LightCache::knownAfter(const MarchParameters& parameters) const {
-  MarchParameters known = parameters;
-  if (parameters.cache.x > 0.0f || !known_) return known;
-  // Columns that are not asked for stay what they were.
-  std::copy(std::begin(known_->lights), std::end(known_->lights), std::begin(known.lights));
-  known.cache = known_->cache;
-  return known;
-}
-
 bool LightCache::plan(const BrickAtlas& atlas, const MarchParameters& parameters) {
-  // Columns that were asked for once stay: between moving and resting pictures the shape does not change.
-  const bool lacksColumns =
-      parameters.cache.x > 0.0f && parameters.counts.x > 0 && columnKind_ != parameters.cache.x;
-  const bool anew =
-      atlasSerial_ != atlas.serial() || !known_ || lacksColumns || !sameShape(*known_, parameters);
+  // What was asked for once stays: between moving and resting pictures the shape does not change.
+  MarchParameters shaped = parameters;
+  if (known_ && !asksSky(parameters)) {
+    shaped.skySize.z = known_->skySize.z;
+    shaped.cacheShape.y = known_->cacheShape.y;
+  }
+  const bool lacksColumns = asksColumns(parameters) && columnKind_ != parameters.cache.x;
+  const bool anew = atlasSerial_ != atlas.serial() || !known_ || lacksColumns || !sameShape(*known_, shaped);
   if (anew) {
     tasks_.clear();
-    known_.reset();
+    shaped = parameters;
     shape(atlas, parameters);
     atlasSerial_ = atlas.serial();
   }
-  findTasks(parameters, std::exchange(atlasContents_, atlas.contents()) != atlas.contents());
+  if (std::exchange(atlasContents_, atlas.contents()) != atlas.contents() || anew) {
+    columnsOf_.reset();
+    skyOf_.reset();
+  }
+  findTasks(parameters);
   if (blockTotal_ == 0) tasks_.clear();
-  known_ = knownAfter(parameters);
+  known_ = shaped;
   return anew;
 }
 
 std::vector<LightCache::Task>::iterator LightCache::nextTask(const MarchParameters& parameters) {
-  return std::find_if(tasks_.begin(), tasks_.end(),
-                      [&](const Task& task) { return task.light == kSky || parameters.cache.x > 0.0f; });
+  return std::find_if(tasks_.begin(), tasks_.end(), [&](const Task& task) {
+    return task.light == kSky ? asksSky(parameters) : asksColumns(parameters);
+  });
 }
 
 void LightCache::begin(const BrickAtlas& atlas, const MarchParameters& parameters) {

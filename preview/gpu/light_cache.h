@@ -59,11 +59,10 @@ class LightCache {
   void shape(const BrickAtlas& atlas, const shared::MarchParameters& parameters);
   /// Finds what differs from the last time; true where all it held is forgotten.
   bool plan(const BrickAtlas& atlas, const shared::MarchParameters& parameters);
-  shared::MarchParameters knownAfter(const shared::MarchParameters& parameters) const;
-  void findTasks(const shared::MarchParameters& parameters, bool otherContents);
+  void findTasks(const shared::MarchParameters& parameters);
   void fill(const BrickAtlas& atlas, Task& task, uint32_t blocks);
-  /// The first of what these parameters ask for. Columns that a moving picture left wait while resting ones
-  /// ask for none: these know no κ to fill them by.
+  /// The first of what these parameters ask for. What a moving picture left waits while resting ones do not
+  /// ask for it: these know no κ to fill columns by.
   std::vector<Task>::iterator nextTask(const shared::MarchParameters& parameters);
 
   const GlProgram& programFor(const shared::MarchParameters& parameters);
@@ -79,7 +78,8 @@ class LightCache {
   bool bare_ = false;        // it holds nothing yet that could be shown
   uint64_t gpuBytes_ = 0;
   uint64_t atlasSerial_ = 0, atlasContents_ = 0;
-  std::optional<shared::MarchParameters> known_;
+  std::optional<shared::MarchParameters> known_;  // of the last picture; its shape is what is held
+  std::optional<shared::MarchParameters> columnsOf_, skyOf_;  // what each is filled for, or will be
   std::vector<Task> tasks_;
   double blocksPerSecond_ = 0.0;
 };

@@ -6,9 +6,8 @@
 
 namespace nephele {
 
-/// Sample `number`'s place in the pixel, in [0, 1)²: the additive recurrence frac(r + n · (1/p, 1/p²)) with p
-/// the real root of p³ = p + 1 (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018),
-/// shifted by a random r that follows from `seed`. The same for all pixels, computed in double precision.
+/// Sample `number`'s place in the pixel, in [0, 1)²: evenPlace of shaders/shared/random.glsl, scrambled by what
+/// follows from `seed`. The same for all pixels.
 glm::vec2 subPixelOffset(unsigned number, unsigned seed);
 
 }  // namespace nephele

@@ -62,27 +62,25 @@ NPH_FN Lighting lightingFrom(int i, vec3 position) {
 
 // One direction to the sky: half of them follow the phase function, half are uniform, so that the weight stays bounded for
 // all orders; from a map, half of all follow its brightness instead. Neighbouring pixels look the same way, so that
-// differences stay smooth; over the picture's samples the directions follow the additive recurrence of
-// preview/gpu/sub_pixels.h, in integers. Which way of drawing has its turn depends on the seed as well.
+// differences stay smooth; over the picture's samples each way of drawing covers its directions evenly, in an order of the
+// place's own.
 NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
-  uint seed = uint(params.brickCount.w);
-  uint rotation = randomState(place, 0u, 0u, seed);
-  uint bits = rotation + number * 3242174889u;
-  float u1 = float(bits >> 8u) * (1.0f / 16777216.0f);
-  float u2 = float((hashBits(rotation) + number * 2447445414u) >> 8u) * (1.0f / 16777216.0f);
-  uint turn = place + number + hashBits(seed);
+  uint rotation = randomState(place, 0u, 0u, uint(params.brickCount.w));
+  uint turn = shuffledNumber(number, rotation);
   bool map = NPH_MAP && skyKind() == kSkyMap;
   bool byPhase = (turn & 1u) == 0u;
   bool byMap = map && (turn & 2u) != 0u;
+  vec2 u = evenPlace(turn >> (map ? 2u : 1u), rotation);
   vec3 lobes = vec3(params.phase);
   Lighting l;
   if (byMap) {
+    uint bits = uint(u.x * 16777216.0f) * 256u;
     uint state = bits;
-    l.toLight = drawFromMap(bits, nextUniform(state), u2);
+    l.toLight = drawFromMap(bits, nextUniform(state), u.y);
   } else if (byPhase) {
-    l.toLight = samplePhaseFunction(ray, lobes, u1, u2);
+    l.toLight = samplePhaseFunction(ray, lobes, u.x, u.y);
   } else {
-    l.toLight = sampleHenyeyGreenstein(ray, 0.0f, u1, u2);
+    l.toLight = sampleHenyeyGreenstein(ray, 0.0f, u.x, u.y);
   }
   l.toLightIndex = l.toLight.x * vec3(params.indexFromWorldX) + l.toLight.y * vec3(params.indexFromWorldY) +
                    l.toLight.z * vec3(params.indexFromWorldZ);

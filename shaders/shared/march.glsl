@@ -37,10 +37,10 @@ NPH_FN float stepStart(float jitter, uint number) {
   return float((uint(jitter * 16777216.0f) * 256u + number * 2654435769u) >> 8u) * (1.0f / 16777216.0f);
 }
 
-// The number that draws which of the steps lit together light is asked at: another such recurrence, of a plastic share. As bits,
+// The number that draws which of the steps lit together light is asked at: another such recurrence, by √2. As bits,
 // stepStart's is taken back from it.
 NPH_FN float litStart(float start, uint lit, uint number) {
-  uint bits = uint(start * 16777216.0f) * 256u + number * (3242174889u - 2654435769u) + lit * 2447445414u;
+  uint bits = uint(start * 16777216.0f) * 256u + number * (1779033704u - 2654435769u) + lit * 2447445414u;
   return float(bits >> 8u) * (1.0f / 16777216.0f);
 }
 

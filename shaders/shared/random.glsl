@@ -21,5 +21,40 @@ NPH_FN float nextUniform(NPH_INOUT(uint) state) {
   return float(state >> 8u) * (1.0f / 16777216.0f);
 }
 
+NPH_FN uint reversedBits(uint x) {
+  x = (x << 16u) | (x >> 16u);
+  x = ((x & 0x00ff00ffu) << 8u) | ((x >> 8u) & 0x00ff00ffu);
+  x = ((x & 0x0f0f0f0fu) << 4u) | ((x >> 4u) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2u) | ((x >> 2u) & 0x33333333u);
+  return ((x & 0x55555555u) << 1u) | ((x >> 1u) & 0x55555555u);
+}
+
+// Another order of all numbers, in which each aligned run of 2^k is again such a run, shuffled (nested uniform scrambling:
+// Laine and Karras, "Stratified sampling for stochastic transparency", 2011). A sequence taken in such an order stays as even,
+// and knows nothing of the sample's other sequences: two that go on in step cover a line of the square, not the square.
+NPH_FN uint shuffledNumber(uint number, uint seed) {
+  uint x = reversedBits(number) + seed;
+  x ^= x * 0x6c50b47cu;
+  x ^= x * 0xb82f1e52u;
+  x ^= x * 0xc7afe638u;
+  x ^= x * 0x8d22f6e6u;
+  return reversedBits(x);
+}
+
+// Place `number` in [0, 1)² of a sequence whose first 2^k places, and each aligned run of so many, have one in each box of
+// every grid of 2^k equal boxes: Sobol's first two dimensions, of which the second is Pascal's triangle modulo 2, scrambled
+// by `seed` (Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995).
+NPH_FN vec2 evenPlace(uint number, uint seed) {
+  uint pascal = number ^ ((number >> 1u) & 0x55555555u);
+  pascal ^= (pascal >> 2u) & 0x33333333u;
+  pascal ^= (pascal >> 4u) & 0x0f0f0f0fu;
+  pascal ^= (pascal >> 8u) & 0x00ff00ffu;
+  pascal ^= (pascal >> 16u) & 0x0000ffffu;
+  uint seed2 = hashBits(seed);
+  uint x = shuffledNumber(reversedBits(number), seed2);
+  uint y = shuffledNumber(reversedBits(pascal), hashBits(seed2));
+  return vec2(float(x >> 8u), float(y >> 8u)) * (1.0f / 16777216.0f);
+}
+
 // Edge of the tile of blue noise that starts steps apart from those of neighbouring pixels (base/blue_noise.h).
 NPH_CONST int kJitterTile = 64;

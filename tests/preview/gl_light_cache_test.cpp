@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "preview/gpu/moving.h"
 #include "preview/measure/compare.h"
@@ -67,6 +68,32 @@ TEST(GlLightCache, ColumnsThatMovingLeavesAreNotFilledAtRest) {
   pass.setParameters(resting);
   EXPECT_TRUE(pass.prepare(atlas, kForever))
       << "a picture at rest waits for columns that it does not ask for";
+  const Picture followed = moved(pass, bricks, atlas, inMotion(after));
+  const Picture expected = moved(fresh, bricks, atlas, inMotion(after));
+  EXPECT_EQ(comparePictures(followed, "followed", expected, "anew").relativeRmse, 0.0);
+}
+
+// At rest such a cloud's sky is marched for: what the cache holds of it stays, and is not taken for another
+// sky's.
+TEST(GlLightCache, ASkyThatChangesAtRestIsKnownToTheNextPictureThatMoves) {
+  needContext();
+  const BrickVolume bricks = thickCloud();
+  const BrickAtlas atlas(bricks, Filter::hardware, Texel::r16f);
+  ViewedScene before = litFrom({0.6, 0.0, 0.8});
+  before.scene.environment.kind = Environment::Kind::ramp;
+  before.scene.environment.ramp = {{0.3, 0.2, 0.1}, {0.9, 1.0, 1.1}, {0.1, 0.3, 0.8}, 0.2, 1.5};
+  ViewedScene after = before;
+  std::swap(after.scene.environment.ramp.ground, after.scene.environment.ramp.zenith);
+  MarchPass pass(Filter::hardware), fresh(Filter::hardware);
+  moved(pass, bricks, atlas, inMotion(before));
+  const uint64_t held = pass.gpuBytes();
+  pass.takeCacheDensities();
+  const shared::MarchParameters resting = parametersOf(after, bricks, atlas);
+  ASSERT_EQ(resting.cacheShape.y, 0) << "at rest it asks for the sky as well";
+  pass.setParameters(resting);
+  EXPECT_TRUE(pass.prepare(atlas, kForever));
+  EXPECT_EQ(pass.takeCacheDensities(), 0.0);
+  EXPECT_EQ(pass.gpuBytes(), held);
   const Picture followed = moved(pass, bricks, atlas, inMotion(after));
   const Picture expected = moved(fresh, bricks, atlas, inMotion(after));
   EXPECT_EQ(comparePictures(followed, "followed", expected, "anew").relativeRmse, 0.0);

@@ -123,20 +123,5 @@ TEST(GlAccumulator, PiecesMakeUpOneMeanOfSamples) {
   EXPECT_GT(a.densitySamples, 0.0);
 }
 
-TEST(SubPixels, CoverThePixelEvenly) {
-  // 64 points of a low-discrepancy set: each of 4 × 4 cells holds 4, give or take 2.
-  int counts[16] = {};
-  for (unsigned n = 0; n < 64; ++n) {
-    const glm::vec2 at = subPixelOffset(n, 11);
-    ASSERT_GE(at.x, 0.0f);
-    ASSERT_LT(at.x, 1.0f);
-    ASSERT_GE(at.y, 0.0f);
-    ASSERT_LT(at.y, 1.0f);
-    ++counts[static_cast<int>(at.y * 4.0f) * 4 + static_cast<int>(at.x * 4.0f)];
-  }
-  for (int count : counts) EXPECT_NEAR(count, 4, 2);
-  EXPECT_NE(subPixelOffset(0, 1), subPixelOffset(0, 2));
-}
-
 }  // namespace
 }  // namespace nephele::testing_gl

@@ -47,6 +47,7 @@ TEST(LightCache, OpennessKeepsItsSamplesWhereAPictureIsSmall) {
   view.camera.position = glm::dvec3(-3.0 * kEdge, 0.5 * kEdge, 0.5 * kEdge);
   view.medium = {{0.5, 0.5, 0.5}, {0.0, 0.0, 0.0}, 0.0};
   view.scene.environment.constant = {1.0, 1.0, 1.0};
+  view.scene.march.cacheDepth = 1e3;  // the cache, however thick a voxel is
   const auto samples = [&](int height, double d) {
     view.scene.octaves = {2, 0.5, 0.5, 0.5, d};
     return marchParameters(view, bricks, height, height, 0, false).cacheShape.y;

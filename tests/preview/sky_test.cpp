@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "preview/gpu/light_parameters.h"
+#include "preview/gpu/sub_pixels.h"
 #include "preview/twin/march.h"
 #include "scene/sky.h"
 
@@ -158,6 +161,30 @@ TEST(SharedSky, DirectionsDrawnFromAMapHaveTheDensityItSays) {
         skyRadiance(view.scene.environment, view.environmentMap.get(), view.up, spiral(i, kDirections)).x;
   EXPECT_NEAR(solidAngle / (4.0 * kPiDouble), 1.0, 1e-2);
   EXPECT_NEAR(energy / expected, 1.0, 1e-2);
+}
+
+// Numbers of one sample that go on in step would cover a line of the square: pictures would settle on another
+// mean.
+TEST(SharedSky, DirectionsKnowNothingOfASamplesOtherNumbers) {
+  March<NoBricks> march = marchOver(rampView(0.3, {0, 0, 1}));
+  march.params.counts.w = 1;
+  constexpr int kCells = 16;
+  constexpr uint kNumbers = 4096;
+  const vec3 ray(0.0f, 0.0f, 1.0f);
+  const auto cell = [](float share) { return std::min(static_cast<int>(share * kCells), kCells - 1); };
+  std::set<std::pair<int, int>> withStart, withLit, withPixel;
+  for (uint number = 0; number < kNumbers; ++number) {
+    const float start = march.stepStart(0.3f, number);
+    const int along = cell(0.5f - 0.5f * dot(ray, march.lightingFromSky(ray, 2u, number).toLight));
+    withStart.insert({cell(start), along});
+    withLit.insert({cell(march.litStart(start, 2u, number)), along});
+    withPixel.insert({cell(subPixelOffset(number, 0).x), along});
+  }
+  // Of 4096 places drawn at random none of 256 cells would be left out but once in 30 times.
+  constexpr size_t kMost = kCells * kCells, kLeast = kMost - 2;
+  EXPECT_GE(withStart.size(), kLeast);
+  EXPECT_GE(withLit.size(), kLeast);
+  EXPECT_GE(withPixel.size(), kLeast);
 }
 
 TEST(SharedSky, EveryKindLightsAThinMediumByItsMean) {
