@@ -81,6 +81,7 @@ class Splatter {
   void findScales() {
     if (sorter_.allSmall()) return;
     scales_.resize(particles_.size());
+    if (places_.anyShaped()) shaping_.makeRoom();
     const double volume = settings_.voxelSize * settings_.voxelSize * settings_.voxelSize;
     constexpr size_t kAtOnce = 256;
     tbb::parallel_for(size_t(0), (particles_.size() + kAtOnce - 1) / kAtOnce, [&](size_t block) {
@@ -243,8 +244,7 @@ class Splatter {
     const SplatFrame f = places_.frameOf(n);
     const Coord origin = tile + inTile;
     float weights[kLeafVoxels];
-    const double sum = shaping_.weights(n, f, {origin.x(), origin.y(), origin.z()}, weights);
-    if (sum == 0.0) return;
+    if (!shaping_.weights(n, f, {origin.x(), origin.y(), origin.z()}, weights)) return;
     for (int v = 0; v < kLeafVoxels; ++v)
       if (weights[v] > 0.0f) addWeight(batch, k, v, weights[v] * batch.records[k].scale, sums);
   }
@@ -325,7 +325,7 @@ class Splatter {
   mutable tbb::enumerable_thread_specific<TileRoom> rooms_;
   std::vector<float> scales_;  // below 0: a point, since noise left nothing else
   const SplatLeaves leaves_;
-  const SplatShaping shaping_;
+  SplatShaping shaping_;
   const SplatSorter sorter_;
   const bool extras_;
 };

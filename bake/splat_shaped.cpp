@@ -2,6 +2,7 @@
 #include "bake/splat_shaped.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace nephele {
 namespace {
@@ -34,6 +35,20 @@ bool mayReach(const SplatFrame& f, const glm::ivec3& origin) {
     apart[axis] = float(origin[axis] - f.record.cell[axis]) + kToCentre - f.record.rest[axis];
   const float reach = (f.record.radius + kToCorner) * kRoom;
   return squaredFromLine(f.shape, apart) <= reach * reach;
+}
+
+/// The leaves, in units of a leaf, of all voxels that a particle can reach, both ends included.
+struct LeafBox {
+  glm::ivec3 low, high;
+  size_t indexOf(const glm::ivec3& leaf) const {
+    const glm::ivec3 size = high - low + 1, at = leaf - low;
+    return (size_t(at.x) * size_t(size.y) + size_t(at.y)) * size_t(size.z) + size_t(at.z);
+  }
+};
+LeafBox leavesOf(const SplatFrame& f) {
+  constexpr int kShift = 3;  // 8 voxels; shifts of negative numbers round down
+  return {{f.low.x >> kShift, f.low.y >> kShift, f.low.z >> kShift},
+          {f.high.x >> kShift, f.high.y >> kShift, f.high.z >> kShift}};
 }
 
 }  // namespace
@@ -69,20 +84,62 @@ const float* SplatShaping::fieldAt(size_t n, const SplatFrame& f, const glm::ive
   return values;
 }
 
-double SplatShaping::weights(size_t n, const SplatFrame& f, const glm::ivec3& origin, float* weights) const {
+/// As weights(), whatever was kept; returns their sum, 0 where the particle surely does not reach.
+double SplatShaping::evaluate(size_t n, const SplatFrame& f, const glm::ivec3& origin, float* weights) const {
   if (!mayReach(f, origin)) return 0.0;
   float field[kLeafVoxels];
   return splatShaped(settings_.kernel, f.record, f.shape, &origin.x, fieldAt(n, f, origin, field), weights);
 }
 
-double SplatShaping::sum(size_t n, const SplatFrame& f) const {
+/// Appends a leaf; null for one that is not reached.
+void SplatShaping::Kept::add(const float* values) {
+  KeptLeaf leaf;
+  leaf.first = uint32_t(weights.size());
+  for (int v = 0; v < kLeafVoxels && values; ++v) {
+    if (!(values[v] > 0.0f)) continue;
+    leaf.above[v / 64] |= uint64_t(1) << (v % 64);
+    weights.push_back(values[v]);
+  }
+  leaves.push_back(leaf);
+}
+
+double SplatShaping::sum(size_t n, const SplatFrame& f) {
   double sum = 0.0;
-  float unused[kLeafVoxels];
-  for (int x = f.low.x & ~(kLeafEdge - 1); x <= f.high.x; x += kLeafEdge)
-    for (int y = f.low.y & ~(kLeafEdge - 1); y <= f.high.y; y += kLeafEdge)
-      for (int z = f.low.z & ~(kLeafEdge - 1); z <= f.high.z; z += kLeafEdge)
-        sum += weights(n, f, {x, y, z}, unused);
+  float found[kLeafVoxels];
+  Kept kept;
+  bool room = !kept_.empty() && f.shape.erosion > 0.0f;  // without a field they are cheap
+  const LeafBox box = leavesOf(f);
+  for (int x = box.low.x; x <= box.high.x; ++x)
+    for (int y = box.low.y; y <= box.high.y; ++y)
+      for (int z = box.low.z; z <= box.high.z; ++z) {
+        const double leaf = evaluate(n, f, glm::ivec3(x, y, z) * kLeafEdge, found);
+        sum += leaf;
+        if (!room) continue;
+        kept.add(leaf > 0.0 ? found : nullptr);
+        room = kept.bytes() <= keptBytes_;
+      }
+  if (!room) return sum;
+  kept.weights.shrink_to_fit();
+  // Who comes first keeps them: that decides about time alone.
+  if (usedBytes_.fetch_add(kept.bytes()) + kept.bytes() <= keptBytes_)
+    kept_[n] = std::move(kept);
+  else
+    usedBytes_.fetch_sub(kept.bytes());
   return sum;
+}
+
+bool SplatShaping::weights(size_t n, const SplatFrame& f, const glm::ivec3& origin, float* weights) const {
+  if (kept_.empty() || kept_[n].leaves.empty()) return evaluate(n, f, origin, weights) > 0.0;
+  const LeafBox box = leavesOf(f);
+  const KeptLeaf& leaf = kept_[n].leaves[box.indexOf(origin / kLeafEdge)];
+  const float* next = kept_[n].weights.data() + leaf.first;
+  bool any = false;
+  for (int word = 0; word < kLeafVoxels / 64; ++word)
+    for (uint64_t left = leaf.above[word]; left != 0; left &= left - 1, any = true) {
+      if (!any) std::fill_n(weights, kLeafVoxels, 0.0f);
+      weights[word * 64 + std::countr_zero(left)] = *next++;
+    }
+  return any;
 }
 
 }  // namespace nephele

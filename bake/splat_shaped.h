@@ -2,29 +2,56 @@
 // Part of splat; depends on splat_places.h, splat_kernels.h, no OpenVDB.
 #pragma once
 
+#include <atomic>
+#include <vector>
+
 #include "bake/splat_places.h"
 
 namespace nephele {
 
-/// Immutable, safe to share between threads; keeps references to its arguments.
+/// Weights that may be kept from sum() for weights(), so that a field is evaluated once: 512 MiB.
+inline constexpr size_t kKeptWeightsBytes = size_t(512) << 20;
+
+/// Keeps references to its arguments.
 class SplatShaping {
  public:
-  SplatShaping(const SplatParticles& particles, const SplatSettings& settings)
-      : particles_(particles), settings_(settings) {}
+  SplatShaping(const SplatParticles& particles, const SplatSettings& settings,
+               size_t keptBytes = kKeptWeightsBytes)
+      : particles_(particles), settings_(settings), keptBytes_(keptBytes) {}
 
-  /// The particle's kernel, not scaled, on the 8³ voxels from `origin` (in the grid's frame): weights[512]
-  /// and their sum. Where the particle surely does not reach, the sum is 0 and the weights are left as they
-  /// are.
-  double weights(size_t particle, const SplatFrame& frame, const glm::ivec3& origin, float* weights) const;
-  /// Σ weights over all voxels: 0 where the field has eaten all of it.
-  double sum(size_t particle, const SplatFrame& frame) const;
+  /// Σ of the particle's kernel, not scaled, over all voxels: 0 where the field has eaten all of it. Keeps
+  /// its weights while there is room. Threads may ask for different particles at once, after makeRoom().
+  double sum(size_t particle, const SplatFrame& frame);
+  /// One entry for each particle; until then nothing is kept.
+  void makeRoom() { kept_.resize(particles_.size()); }
+
+  /// The kernel on the 8³ voxels from `origin` (in the grid's frame, a multiple of 8): weights[512]. False,
+  /// and weights left as they are, where the particle does not reach. The same numbers whether they were kept
+  /// or not. Safe to share between threads.
+  bool weights(size_t particle, const SplatFrame& frame, const glm::ivec3& origin, float* weights) const;
 
  private:
+  /// One leaf's weights above 0.
+  struct KeptLeaf {
+    uint64_t above[kLeafVoxels / 64] = {};  // a bit a voxel
+    uint32_t first = 0;                     // of its weights in Kept::weights
+  };
+  struct Kept {
+    std::vector<KeptLeaf> leaves;  // of the box that the particle can reach; empty where nothing was kept
+    std::vector<float> weights;
+    void add(const float* weights);
+    size_t bytes() const { return leaves.size() * sizeof(KeptLeaf) + weights.size() * sizeof(float); }
+  };
+
+  double evaluate(size_t particle, const SplatFrame& frame, const glm::ivec3& origin, float* weights) const;
   const float* fieldAt(size_t particle, const SplatFrame& frame, const glm::ivec3& origin,
                        float* values) const;
 
   const SplatParticles& particles_;
   const SplatSettings& settings_;
+  const size_t keptBytes_;
+  std::atomic<size_t> usedBytes_{0};
+  std::vector<Kept> kept_;
 };
 
 }  // namespace nephele

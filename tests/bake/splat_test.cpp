@@ -5,11 +5,15 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <glm/vector_relational.hpp>
 #include <numbers>
 
 #include "bake/splat_kernels.h"
+#include "bake/splat_shaped.h"
 #include "tests/bake/every_target.h"
 #include "tests/bake/field_samples.h"
 #include "volume/bricks.h"
@@ -190,6 +194,56 @@ TEST(Splat, ErosionEatsIntoParticlesAndKeepsMass) {
   const Splatted nothingLeft = splat(cloud.particles(), settings);
   EXPECT_NEAR(nothingLeft.ledger.stored / cloud.total(), 1.0, 1e-5);
   EXPECT_LE(nothingLeft.voxelsActive, 40u * 8u);
+}
+
+/// Counts the points that it is asked for.
+class CountingField : public Field {
+ public:
+  explicit CountingField(FieldPtr inner) : inner_(std::move(inner)) {}
+  void evaluate(const Points& points, float* values) const override {
+    asked += points.count;
+    inner_->evaluate(points, values);
+  }
+  Interval bounds(const Box& box) const override { return inner_->bounds(box); }
+  Box support() const override { return inner_->support(); }
+  mutable std::atomic<size_t> asked{0};
+
+ private:
+  FieldPtr inner_;
+};
+
+TEST(Splat, ErosionIsEvaluatedOnceAndWeightsAreTheSameWhetherKeptOrNot) {
+  const Cloud cloud = randomCloud(20, 20.0f, 3.0f, 9.0f);
+  const SplatParticles particles = cloud.particles();
+  SplatSettings settings = plain();
+  const auto field = std::make_shared<CountingField>(makeField("fbm", {{"cell_size", 0.5}}));
+  settings.erosion = field;
+  settings.erosionAmount = 1.5;
+  const SplatPlaces places(particles, settings);
+  SplatShaping kept(particles, settings), forgotten(particles, settings, 0);
+  kept.makeRoom();
+  forgotten.makeRoom();
+  size_t same = 0;
+  for (size_t n = 0; n < particles.size(); ++n) {
+    const SplatFrame f = places.frameOf(n);
+    EXPECT_EQ(kept.sum(n, f), forgotten.sum(n, f));
+    for (int x = -32; x < 32; x += kLeafEdge)
+      for (int y = -32; y < 32; y += kLeafEdge)
+        for (int z = -32; z < 32; z += kLeafEdge) {
+          const glm::ivec3 origin(x, y, z), low = f.low & ~(kLeafEdge - 1);
+          if (glm::any(glm::lessThan(origin, low)) || glm::any(glm::greaterThan(origin, f.high))) continue;
+          float a[kLeafVoxels] = {}, b[kLeafVoxels] = {};
+          EXPECT_EQ(kept.weights(n, f, origin, a), forgotten.weights(n, f, origin, b));
+          EXPECT_EQ(std::memcmp(a, b, sizeof a), 0);
+          ++same;
+        }
+  }
+  EXPECT_GT(same, 8 * particles.size());
+  field->asked = 0;
+  for (size_t n = 0; n < particles.size(); ++n) forgotten.sum(n, places.frameOf(n));
+  const size_t once = field->asked.exchange(0);
+  splat(particles, settings);
+  EXPECT_EQ(field->asked, once);
 }
 
 TEST(Splat, LedgerAddsUp) {
