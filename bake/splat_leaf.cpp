@@ -10,6 +10,7 @@
 #include "bake/splat_places.h"
 #include "bake/voxelize_kernels.h"
 #include "base/figures.h"
+#include "base/half.h"
 
 namespace nephele {
 namespace {
@@ -60,7 +61,7 @@ void SplatLeaves::close(const Coord& origin, OpenLeaf& open, SplatLedger& ledger
   float* const values = open.density->buffer().data();
   if (settings_.box) cutToBox(origin, values);
   const LeafRules rules{float(settings_.cutoff),
-                        settings_.half ? kHalfLargest : std::numeric_limits<float>::max(), settings_.half,
+                        settings_.half ? kLargestHalf : std::numeric_limits<float>::max(), settings_.half,
                         float(settings_.densityStep)};
   // Floats above 0 that are neither cut nor rounded are stored as they are.
   const bool lossless = !rules.half && rules.step <= 0.0f && rules.cutoff <= 0.0f && !extras();
@@ -97,7 +98,7 @@ void SplatLeaves::closeExtras(const Coord& origin, const float* density, OpenLea
       extra[v] = mask.isOn(openvdb::Index(v)) ? extra[v] / density[v] : 0.0f;
     if (!settings_.half) continue;
     for (int v = 0; v < kLeafVoxels; ++v)
-      if (std::abs(extra[v]) > kHalfLargest)
+      if (std::abs(extra[v]) > kLargestHalf)
         throw SplatError("a velocity, temperature or age reaches " + shown(double(extra[v])) +
                          ", more than half precision holds (65504); ask for 'precision: float'");
     roundToHalf(extra, kLeafVoxels);

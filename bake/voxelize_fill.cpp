@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/figures.h"
+#include "base/half.h"
 
 namespace nephele {
 
@@ -50,7 +51,7 @@ void checkEnds(const Field& field) {
 LeafFiller::LeafFiller(const Field& field, const VoxelizeSettings& settings)
     : field_(field),
       settings_(settings),
-      rules_{float(settings.cutoff), settings.half ? kHalfLargest : std::numeric_limits<float>::max(),
+      rules_{float(settings.cutoff), settings.half ? kLargestHalf : std::numeric_limits<float>::max(),
              settings.half, float(settings.densityStep)} {
   if (settings_.voxelSize < kSmallestVoxel)
     throw VoxelizeError("voxels of " + shown(settings_.voxelSize) + " world units are below " +

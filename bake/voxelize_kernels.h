@@ -6,9 +6,6 @@
 
 namespace nephele {
 
-/// The largest finite half.
-inline constexpr float kHalfLargest = 65504.0f;
-
 /// How a leaf's values are cut and rounded.
 struct LeafRules {
   float cutoff = 0.0f;  // values at or below become 0 and inactive

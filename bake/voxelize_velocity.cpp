@@ -1,4 +1,4 @@
-// Velocities on the voxels of a density. Depends on voxelize_grid.h, voxelize_kernels.h, OpenVDB, TBB.
+// Velocities on the voxels of a density. Depends on voxelize_grid.h, base, OpenVDB, TBB.
 #include <openvdb/tools/Prune.h>
 #include <tbb/parallel_for.h>
 
@@ -9,7 +9,7 @@
 
 #include "bake/voxelize.h"
 #include "bake/voxelize_grid.h"
-#include "bake/voxelize_kernels.h"
+#include "base/half.h"
 
 namespace nephele {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 using Leaf = openvdb::Vec3STree::LeafNodeType;
 
 float stored(float value, const openvdb::Coord& leaf, bool half) {
-  if (!std::isfinite(value) || (half && std::abs(value) > kHalfLargest))
+  if (!std::isfinite(value) || (half && std::abs(value) > kLargestHalf))
     throw VoxelizeError("the velocity reaches " + std::to_string(value) + " in the block at voxel (" +
                         std::to_string(leaf.x()) + ", " + std::to_string(leaf.y()) + ", " +
                         std::to_string(leaf.z()) + "), which the file cannot hold");

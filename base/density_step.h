@@ -1,14 +1,16 @@
 // Steps of stored densities: powers of two, whose multiples halves hold and compressors find again. Depends
-// on nothing.
+// on half.h.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/half.h"
+
 namespace nephele {
 
 /// The least step is the least half's; the greatest the largest power of two that a half holds.
-inline constexpr double kLeastDensityStep = 0x1p-24, kGreatestDensityStep = 0x1p15;
+inline constexpr double kLeastDensityStep = double{kLeastHalf}, kGreatestDensityStep = 0x1p15;
 
 inline bool isDensityStep(double step) {
   int exponent = 0;

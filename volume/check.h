@@ -19,7 +19,7 @@ Audience audienceOf(const std::string& name);
 
 /// What the rules ask of a grid beside what `info` tells.
 struct GridFacts {
-  GridInfo info;
+  GridInfo info;                        // without its content hash
   std::string tree;                     // "Tree_float_5_4_3", as the file names it
   std::string vectorType;               // "contravariant relative", "invariant", …
   std::optional<uint32_t> compression;  // as in VdbGridEntry

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/frame_name.h"
+#include "base/half.h"
 #include "volume/check.h"
 #include "volume/inspect_grid.h"
 #include "volume/vdb_file.h"
@@ -12,15 +13,13 @@
 namespace nephele {
 namespace {
 
-constexpr double kMostHalf = 65504.0, kLeastHalf = 6e-8;
-
 void countNumber(GridFacts& facts, float value) {
   const double size = std::abs(double{value});
   if (!std::isfinite(value))
     ++facts.notFinite;
-  else if (size > kMostHalf)
+  else if (size > double{kLargestHalf})
     ++facts.aboveHalf;
-  else if (size > 0.0 && size < kLeastHalf)
+  else if (size > 0.0 && size < double{kLeastHalf})
     ++facts.belowHalf;
 }
 

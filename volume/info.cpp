@@ -65,7 +65,6 @@ GridInfo inspectGrid(const openvdb::GridBase& grid) {
   }
   info.bytes = grid.memUsage();
   info.denseBytes = denseBytesOf(info);
-  info.contentHash = contentHash(grid);
   info.metadata = metadataAsText(grid);
   return info;
 }
@@ -171,7 +170,8 @@ FileInfo inspectFile(const std::string& path) {
   info.path = path;
   info.fileBytes = readVdbHeader(path).sizeBytes;
   info.metadata = metadataAsText(*contents.metadata);
-  for (const auto& grid : *contents.grids) info.grids.push_back(inspectGrid(*grid));
+  for (const auto& grid : *contents.grids)
+    info.grids.emplace_back(inspectGrid(*grid)).contentHash = contentHash(*grid);
   return info;
 }
 

@@ -7,6 +7,7 @@
 
 namespace nephele {
 
+/// All but the content hash, which takes a walk over all values.
 GridInfo inspectGrid(const openvdb::GridBase& grid);
 
 }  // namespace nephele

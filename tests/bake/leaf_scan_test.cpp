@@ -7,13 +7,13 @@
 #include <random>
 
 #include "bake/voxelize_kernels.h"
+#include "base/half.h"
 #include "tests/bake/every_target.h"
 
 namespace nephele::test {
 namespace {
 
 constexpr size_t kValues = 512;
-constexpr float kLargestHalf = 65504.0f;
 
 /// Floats of all sizes between 2^-30 and 2^16, some exactly between two halves, some negative or 0.
 std::vector<float> assorted(uint32_t seed) {

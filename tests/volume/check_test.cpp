@@ -70,6 +70,14 @@ TEST(Check, AGoodFileBreaksNoRule) {
   EXPECT_EQ(verdictOf(both, "other grids").holds, Holds::yes) << verdictOf(both, "other grids").sentence;
 }
 
+TEST(Check, HashesNothing) {
+  const ScratchFolder scratch;
+  const std::string file = scratch.file("a.vdb");
+  writeVdb(file, {randomGrid({0, 0, 0}, 20)}, someProvenance());
+  EXPECT_EQ(factsOf(file).grids.at(0).info.contentHash, "");
+  EXPECT_EQ(inspectFile(file).grids.at(0).contentHash.size(), 32u);
+}
+
 /// What broken(grid) makes of a good grid.
 template <class Break>
 std::vector<Verdict> verdictsOnBroken(const Break& broken, const Audience& audience = kAll) {
@@ -116,6 +124,7 @@ TEST(Check, WhatIsWorthKnowingIsANote) {
   EXPECT_EQ(noted([](Grid& g) { g.setGridClass(openvdb::GRID_UNKNOWN); }), "density");
   EXPECT_EQ(noted([](Grid& g) { g.tree().setValueOn({3, 3, 3}, 70000.0f); }), "values");
   EXPECT_EQ(noted([](Grid& g) { g.tree().setValueOn({3, 3, 3}, 1e-9f); }), "values");
+  EXPECT_EQ(noted([](Grid& g) { g.tree().setValueOn({3, 3, 3}, 0x1p-24f); }), "") << "the least half";
   EXPECT_EQ(noted([](Grid& g) { g.tree().touchLeaf({100, 0, 0}); }), "topology");
   EXPECT_EQ(noted([](Grid& g) {
               for (int i = 0; i < 512; ++i) g.tree().setValueOn({100 + i / 64 + 4, i / 8 % 8, i % 8}, 0.5f);
