@@ -174,6 +174,17 @@ struct ParticleRun::State {
     writeBox(box);
   }
 
+  Splatted splatWith(const SplatSettings& settings) const {
+    const ParticleView& v = view;
+    try {
+      return splat({v.x, v.y, v.z, v.radius, v.mass, v.vx, v.vy, v.vz, v.temperature, v.age,
+                    simulation->particles().id},
+                   settings);
+    } catch (const SplatError& error) {
+      throw InputError(asset.where, name() + error.what());
+    }
+  }
+
   SplatSettings splatSettings(const Asset& look) const {
     SplatSettings settings;
     settings.voxelSize = look.voxelSize;
@@ -236,15 +247,13 @@ uint64_t ParticleRun::moveTo(std::optional<int> frame) {
 }
 
 Splatted ParticleRun::splatted(const Asset& look) const {
-  const State& s = *state_;
-  const ParticleView& v = s.view;
-  try {
-    return splat({v.x, v.y, v.z, v.radius, v.mass, v.vx, v.vy, v.vz, v.temperature, v.age,
-                  s.simulation->particles().id},
-                 s.splatSettings(look));
-  } catch (const SplatError& error) {
-    throw InputError(s.asset.where, s.name() + error.what());
-  }
+  return state_->splatWith(state_->splatSettings(look));
+}
+
+Splatted ParticleRun::densityOf(const Asset& look) const {
+  SplatSettings settings = state_->splatSettings(look);
+  settings.vel = settings.temperature = settings.age = false;
+  return state_->splatWith(settings);
 }
 
 Box ParticleRun::extent() const {

@@ -152,8 +152,16 @@ Chords TrialBaker::chords(size_t frame, uint64_t count, uint64_t seed) const {
 
 TrialBaker::Depths TrialBaker::depths(size_t frame, const Asset& look, const Chords& chords) const {
   if (state_->asset.particles) {
-    const TrialBake baked = bake(frame, look);
-    return {depthsAlong(baked.bricks, chords.lines), double(baked.voxelsActive), baked.maximum};
+    BrickVolume bricks;
+    double voxels = 0.0, maximum = 0.0;
+    {
+      // Let go of before rays go through the bricks.
+      const Splatted splatted = state_->runs[frame]->densityOf(look);
+      bricks = bricksOf(splatted);
+      voxels = double(splatted.voxelsActive);
+      maximum = splatted.maximum;
+    }
+    return {depthsAlong(bricks, chords.lines), voxels, maximum};
   }
   const Asset& asset = state_->asset;
   try {

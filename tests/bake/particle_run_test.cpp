@@ -191,6 +191,19 @@ assets:
   EXPECT_EQ(copy.contentHash, whole.contentHash) << again;
 }
 
+TEST(ParticleRun, DensityAloneIsTheSameDensity) {
+  const ScratchFolder folder;
+  const Pipeline pipeline = loadPipeline(folder.write("p.yaml", kRecipe));
+  ParticleRun run(pipeline, pipeline.assets[0], folder.file("out"));
+  run.moveTo(10);
+  const Splatted all = run.splatted(pipeline.assets[0]), density = run.densityOf(pipeline.assets[0]);
+  EXPECT_NE(contentHashOf(all, "vel"), "");
+  EXPECT_EQ(contentHashOf(density, "vel"), "");
+  EXPECT_EQ(density.voxelsActive, all.voxelsActive);
+  EXPECT_LT(2 * density.gridBytes, all.gridBytes);
+  EXPECT_LT(difference(bricksOf(all), bricksOf(density)).relativeDensity(), 1e-3) << "a half's rounding";
+}
+
 TEST(ParticleRun, IsUpToDateUntilTheRecipeChanges) {
   const ScratchFolder folder;
   const std::string recipe = folder.write("p.yaml", kRecipe);
