@@ -1,5 +1,8 @@
-// The bake's report as JSON. Depends on run.h.
+// What a bake tells of its files: sentences, and the report as JSON. Depends on run.h.
+#include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "bake/run.h"
 #include "base/figures.h"
@@ -101,6 +104,39 @@ std::string noteAsText(const BandLimitNote& note) {
   std::snprintf(text, sizeof text, "%s: octave %d has %.2f voxels a cell: %s", note.field.c_str(),
                 note.octave + 1, note.cellVoxels, note.weight > 0.0 ? "weakened" : "left out");
   return text;
+}
+
+std::string recordAsText(const BakeRecord& record) {
+  std::ostringstream text;
+  char line[256] = "up to date\n";
+  if (!record.skipped)
+    std::snprintf(line, sizeof line, "%.2f million active voxels, %.1f MB, %.2f s (fill %.2f, write %.2f)\n",
+                  double(record.voxelsActive) * 1e-6, double(record.bytes) * 1e-6,
+                  record.secondsFill + record.secondsHash + record.secondsWrite, record.secondsFill,
+                  record.secondsWrite);
+  text << record.file << ": " << line;
+  for (const BandLimitNote& note : record.bandLimit.value_or(std::vector<BandLimitNote>{})) {
+    if (const std::string sentence = noteAsText(note); !record.skipped && !sentence.empty())
+      text << "  " << sentence << '\n';
+  }
+  for (const LoopNote& note : record.loopNotes)
+    text << "  " << note.field << ": '" << note.parameter << "' of " << note.asked << " became " << note.used
+         << " to close the loop\n";
+  if (record.ledger && !record.skipped) {
+    const MassLedger& m = *record.ledger;
+    std::snprintf(line, sizeof line,
+                  "  %llu particles, simulated in %.2f s; mass %.4g, of which the grid holds %.2f%%\n",
+                  static_cast<unsigned long long>(m.countAlive), record.secondsSimulate, m.alive,
+                  m.alive > 0.0 ? 100.0 * m.stored / m.alive : 100.0);
+    text << line;
+  }
+  if (!record.skipped && !record.velocityHash.empty() && !record.ledger)
+    text << "  vel: speeds up to " << record.largestSpeed << " world units per second\n";
+  if (record.seam)
+    text << "  loop of " << *record.loopFrames << " frames: largest difference "
+         << record.seam->largestDifference << " between frames " << *record.frame << " and "
+         << record.seam->frame << '\n';
+  return text.str();
 }
 
 std::string reportAsJson(const std::vector<BakeRecord>& records) {

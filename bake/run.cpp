@@ -36,12 +36,6 @@ uint64_t peakBytes() {
   return uint64_t(usage.ru_maxrss) * 1024;  // Linux counts kilobytes
 }
 
-std::string fileOf(const std::string& folder, const std::string& name, const std::optional<int>& frame) {
-  char suffix[16] = "";
-  if (frame) std::snprintf(suffix, sizeof suffix, "_%04d", *frame);
-  return (fs::path(folder) / (name + suffix + ".vdb")).string();
-}
-
 /// Whether the file is there, whole, and baked from this recipe by this version.
 bool isUpToDate(const BakeJob& job, const std::string& hash) {
   if (!fs::exists(job.file)) return false;
@@ -246,40 +240,6 @@ BakeRecord bakeOne(const Pipeline& pipeline, const BakeJob& job, const std::stri
   return record;
 }
 
-void tell(const BakeRecord& record) {
-  char line[256];
-  if (record.skipped)
-    std::snprintf(line, sizeof line, "%s: up to date\n", record.file.c_str());
-  else
-    std::snprintf(line, sizeof line,
-                  "%s: %.2f million active voxels, %.1f MB, %.2f s (fill %.2f, write %.2f)\n",
-                  record.file.c_str(), double(record.voxelsActive) * 1e-6, double(record.bytes) * 1e-6,
-                  record.secondsFill + record.secondsHash + record.secondsWrite, record.secondsFill,
-                  record.secondsWrite);
-  std::cerr << line;
-  for (const BandLimitNote& note : record.bandLimit.value_or(std::vector<BandLimitNote>{})) {
-    if (const std::string sentence = noteAsText(note); !record.skipped && !sentence.empty())
-      std::cerr << "  " << sentence << '\n';
-  }
-  for (const LoopNote& note : record.loopNotes)
-    std::cerr << "  " << note.field << ": '" << note.parameter << "' of " << note.asked << " became "
-              << note.used << " to close the loop\n";
-  if (record.ledger && !record.skipped) {
-    const MassLedger& m = *record.ledger;
-    std::snprintf(line, sizeof line,
-                  "  %llu particles, simulated in %.2f s; mass %.4g, of which the grid holds %.2f%%\n",
-                  static_cast<unsigned long long>(m.countAlive), record.secondsSimulate, m.alive,
-                  m.alive > 0.0 ? 100.0 * m.stored / m.alive : 100.0);
-    std::cerr << line;
-  }
-  if (!record.skipped && !record.velocityHash.empty() && !record.ledger)
-    std::cerr << "  vel: speeds up to " << record.largestSpeed << " world units per second\n";
-  if (record.seam)
-    std::cerr << "  loop of " << *record.loopFrames << " frames: largest difference "
-              << record.seam->largestDifference << " between frames " << *record.frame << " and "
-              << record.seam->frame << '\n';
-}
-
 /// What the asset's tolerance chooses, measured once.
 const Choice& settle(const Pipeline& pipeline, const Asset& asset, const BakeOptions& options,
                      std::map<const Asset*, Choice>& choices) {
@@ -294,39 +254,6 @@ const Choice& settle(const Pipeline& pipeline, const Asset& asset, const BakeOpt
 }
 
 }  // namespace
-
-std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& options) {
-  Diagnostics out;
-  std::vector<std::string_view> names;
-  for (const Asset& asset : pipeline.assets) names.push_back(asset.name);
-  for (const std::string& name : options.only)
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      out.add({pipeline.path, 0, 0}, "the recipe has no asset '" + name + "'", didYouMean(name, names));
-  out.throwIfAny();
-  std::vector<BakeJob> jobs;
-  bool anySequence = false;
-  for (const Asset& asset : pipeline.assets) {
-    if (!options.only.empty() &&
-        std::find(options.only.begin(), options.only.end(), asset.name) == options.only.end())
-      continue;
-    if (!asset.frames) {
-      jobs.push_back({&asset, std::nullopt, fileOf(options.outFolder, asset.name, std::nullopt)});
-      continue;
-    }
-    anySequence = true;
-    for (int frame = asset.frames->first; frame <= asset.frames->last; ++frame)
-      if (!options.frames || (options.frames->first <= frame && frame <= options.frames->last))
-        jobs.push_back({&asset, frame, fileOf(options.outFolder, asset.name, frame)});
-  }
-  if (options.frames && (!anySequence || jobs.empty()))
-    throw InputError({pipeline.path, 0, 0}, "no asset has a frame from " +
-                                                std::to_string(options.frames->first) + " to " +
-                                                std::to_string(options.frames->last));
-  std::vector<BakeJob> mine;
-  for (size_t n = 0; n < jobs.size(); ++n)
-    if (int(n % size_t(options.shard.count)) == options.shard.index - 1) mine.push_back(jobs[n]);
-  return mine;
-}
 
 void checkDomains(const Pipeline& pipeline, const std::vector<BakeJob>& jobs, const BakeOptions& options) {
   Diagnostics out;
@@ -393,7 +320,7 @@ std::vector<BakeRecord> bakeAll(const Pipeline& pipeline, const BakeOptions& opt
     record.loopFrames = job.asset->loopFrames;
     // Told once, with the frame that the seam is measured with.
     if (job.frame && job.frame == job.asset->frames->first) record.loopNotes = loopNotesOf(*job.asset);
-    if (!options.quiet) tell(record);
+    if (!options.quiet) std::cerr << recordAsText(record);
     records.push_back(std::move(record));
   }
   return records;

@@ -87,6 +87,9 @@ void makeFolder(const std::string& folder);
 /// What people should know of a note, without the line's end; empty where the report alone tells it.
 std::string noteAsText(const BandLimitNote& note);
 
+/// What people should know of a file: a line of its cost, and one for each thing worth telling.
+std::string recordAsText(const BakeRecord& record);
+
 /// The report of DESIGN.md, section 1: assets[{name, file, frame, seconds{…}, …}].
 std::string reportAsJson(const std::vector<BakeRecord>& records);
 

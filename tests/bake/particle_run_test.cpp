@@ -204,6 +204,17 @@ TEST(ParticleRun, DensityAloneIsTheSameDensity) {
   EXPECT_LT(difference(bricksOf(all), bricksOf(density)).relativeDensity(), 1e-3) << "a half's rounding";
 }
 
+TEST(Report, ALineHoldsALongPathAndEnds) {
+  BakeRecord record;
+  record.file = std::string(300, 'p') + ".vdb";
+  record.skipped = true;
+  EXPECT_EQ(recordAsText(record), record.file + ": up to date\n");
+  record.skipped = false;
+  record.voxelsActive = 1250000;
+  EXPECT_EQ(recordAsText(record),
+            record.file + ": 1.25 million active voxels, 0.0 MB, 0.00 s (fill 0.00, write 0.00)\n");
+}
+
 TEST(ParticleRun, IsUpToDateUntilTheRecipeChanges) {
   const ScratchFolder folder;
   const std::string recipe = folder.write("p.yaml", kRecipe);
