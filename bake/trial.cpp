@@ -10,6 +10,7 @@
 #include "bake/particle_run.h"
 #include "bake/voxelize.h"
 #include "bake/voxelize_rays.h"
+#include "base/figures.h"
 
 namespace nephele {
 namespace {
@@ -157,7 +158,14 @@ TrialBaker::Depths TrialBaker::depths(size_t frame, const Asset& look, const Cho
     {
       // Let go of before rays go through the bricks.
       const Splatted splatted = state_->runs[frame]->densityOf(look);
-      bricks = bricksOf(splatted);
+      try {
+        bricks = bricksOf(splatted);
+      } catch (const InputError& error) {
+        throw InputError(state_->asset.where,
+                         "asset '" + state_->asset.name + "': voxels of " + number(look.voxelSize, 3) +
+                             " are too small for it to be measured: " + error.diagnostics().front().sentence,
+                         "give 'voxel_size', a tolerance that is less strict, or larger particles");
+      }
       voxels = double(splatted.voxelsActive);
       maximum = splatted.maximum;
     }

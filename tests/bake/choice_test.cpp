@@ -102,6 +102,29 @@ TEST_F(ChoiceTest, TheStepStandsInTheFile) {
   EXPECT_EQ(loadBricks(file).metadata.at("density_step"), "0.125");
 }
 
+TEST_F(ChoiceTest, SpecksThatAreTooFarApartAreRefusedWithTheAssetsPlace) {
+  const std::string path = scratch_.file("specks.yaml");
+  std::ofstream(path) << R"(assets:
+  specks:
+    tolerance: 1%
+    particles:
+      emitters: [{ bursts: [[0, 8]], particle_radius: 0.001, shape: sphere, radius: 6 }]
+)";
+  const Pipeline pipeline = loadPipeline(path);
+  const TrialBaker baker(pipeline, pipeline.assets[0], {std::nullopt}, folder());
+  Asset look = pipeline.assets[0];
+  look.voxelSize = 0.001;
+  try {
+    baker.depths(0, look, Chords{});
+    FAIL() << "was not refused";
+  } catch (const InputError& error) {
+    const Diagnostic& said = error.diagnostics().front();
+    EXPECT_EQ(said.where.line, 2);
+    EXPECT_NE(said.sentence.find("asset 'specks': voxels of "), std::string::npos) << said.sentence;
+    EXPECT_NE(said.hint.find("give 'voxel_size'"), std::string::npos) << said.hint;
+  }
+}
+
 TEST_F(ChoiceTest, ALooserToleranceIsNeverDearer) {
   double last = 0.0;
   for (const char* tolerance : {"1%", "3%", "10%"}) {
