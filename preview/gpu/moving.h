@@ -15,7 +15,7 @@ inline constexpr double kMovingCacheSeconds = 0.012;
 /// relative RMSE from its picture at rest, most with the sun behind it (bench/moving.cpp prints the figures).
 /// `share`: of the resting picture's height, so that the light cache is the same for both.
 inline MarchSettings movingMarch(MarchSettings march, double share) {
-  constexpr double kLeastStepVoxels = 4.0, kGiveUp = 0.02;
+  constexpr double kLeastStepVoxels = 3.0, kGiveUp = 0.02;
   const double factor = std::max(1.0, kLeastStepVoxels / march.stepVoxels);
   march.stepVoxels *= factor;
   march.shadowStepVoxels *= factor;

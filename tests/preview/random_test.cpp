@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "preview/gpu/sub_pixels.h"
 #include "shaders/shared/leaves.h"
 
 namespace nephele::shared {
@@ -44,6 +45,21 @@ TEST(SharedRandom, EvenPlacesHaveOneInEachBoxOfEveryGrid) {
         EXPECT_EQ(boxes.size(), size_t{1} << kLog) << seed << ' ' << first << ' ' << a;
       }
   EXPECT_NE(evenPlace(0u, 0u), evenPlace(0u, 1u));
+}
+
+TEST(SubPixels, CoverThePixelEvenlyFromItsMiddleOn) {
+  constexpr int kEdge = 8;
+  for (const unsigned seed : {0u, 1u, 11u}) {
+    EXPECT_EQ(subPixelOffset(0, seed), vec2(0.5f)) << seed;
+    std::set<std::pair<int, int>> boxes;
+    for (unsigned n = 0; n < kEdge * kEdge; ++n) {
+      const vec2 at = subPixelOffset(n, seed);
+      ASSERT_TRUE(at.x >= 0.0f && at.x < 1.0f && at.y >= 0.0f && at.y < 1.0f) << at.x << ' ' << at.y;
+      boxes.insert({static_cast<int>(kEdge * at.x), static_cast<int>(kEdge * at.y)});
+    }
+    EXPECT_EQ(boxes.size(), size_t{kEdge * kEdge}) << seed;
+  }
+  EXPECT_NE(subPixelOffset(1, 1), subPixelOffset(1, 2));
 }
 
 }  // namespace
