@@ -69,7 +69,7 @@ Ray rayFromFace() {
 #else
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  uint random = randomState(uint(pixel.x), uint(pixel.y), sampleNumber, uint(params.brickCount.w));
+  uint random = randomState(uint(pixel.x), uint(pixel.y), 0u, uint(params.brickCount.w));
   float jitter = texelFetch(jitterTile, pixel & ivec2(kJitterTile - 1), 0).r;
 #if NPH_METHOD == 1
   MarchResult result = marchAlong(rayFromFace(), stepStart(jitter, sampleNumber), random, sampleNumber);

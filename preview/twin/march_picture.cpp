@@ -148,7 +148,7 @@ std::vector<TwinPixel> marchPicture(const BrickLayout& layout, const BrickLayout
     for (int y = rows.begin(); y != rows.end(); ++y) {
       for (int x = 0; x < width; ++x) {
         const vec2 at = vec2(static_cast<float>(x), static_cast<float>(y)) + subPixel;
-        const uint random = randomState(static_cast<uint>(x), static_cast<uint>(y), number,
+        const uint random = randomState(static_cast<uint>(x), static_cast<uint>(y), 0u,
                                         static_cast<uint>(parameters.brickCount.w));
         const float start = march.stepStart(
             jitter[static_cast<size_t>(y % kJitterTile * kJitterTile + x % kJitterTile)], number);

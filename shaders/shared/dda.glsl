@@ -46,7 +46,7 @@ NPH_FN MarchResult walkVoxels(Ray r, uint random, uint number) {
       uint placeRandom = hashBits(random ^ lit);
       vec3 at = r.origin + middle * direction;
       vec3 share = powderAt(at, rho) * before * (rho * ds) * stepIntegral(x);
-      vec3 light = vec3(params.sigmaS) * inScattering(at, rho, r.ray, enough, lit, number, placeRandom, result.cost);
+      vec3 light = vec3(params.sigmaS) * inScattering(at, rho, r.ray, enough, number, placeRandom, result.cost);
       result.radiance += light * share;
       lit += 1u;
     }

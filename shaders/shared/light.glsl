@@ -61,16 +61,15 @@ NPH_FN Lighting lightingFrom(int i, vec3 position) {
 }
 
 // One direction to the sky: half of them follow the phase function, half are uniform, so that the weight stays bounded for
-// all orders; from a map, half of all follow its brightness instead. Neighbouring pixels look the same way, so that
-// differences stay smooth; over the picture's samples each way of drawing covers its directions evenly, in an order of the
-// place's own.
-NPH_FN Lighting lightingFromSky(vec3 ray, uint place, uint number) {
-  uint rotation = randomState(place, 0u, 0u, uint(params.brickCount.w));
-  uint turn = shuffledNumber(number, rotation);
+// all orders; from a map, half of all follow its brightness instead. Over the picture's samples each way of drawing covers
+// its directions evenly, in an order of the place's own: `random`. Places that looked the same way together would make
+// pictures of few samples too bright or too dark as a whole.
+NPH_FN Lighting lightingFromSky(vec3 ray, uint random, uint number) {
+    uint turn = shuffledNumber(number, random);
   bool map = NPH_MAP && skyKind() == kSkyMap;
   bool byPhase = (turn & 1u) == 0u;
   bool byMap = map && (turn & 2u) != 0u;
-  vec2 u = evenPlace(turn >> (map ? 2u : 1u), rotation);
+  vec2 u = evenPlace(turn >> (map ? 2u : 1u), random);
   vec3 lobes = vec3(params.phase);
   Lighting l;
   if (byMap) {
@@ -112,21 +111,22 @@ NPH_FN float powderAt(vec3 position, float rho) {
   return powderFactor(params.powder.x, min(rho * params.powder.y, 1.0f), height);
 }
 
-// Source function at a point of density `rho`: Σ over lights and the sky, per unit density, before σ_s. `place` counts the points lit along
-// the ray, `number` the picture's samples. What the light cache holds is taken from there: NPH_CACHED is true where it has the
-// lights' columns, NPH_NEAR where the way to it is marched; NPH_SKY is 0 where there is no sky, 1 where the cache has it, 2 where it is marched for.
-NPH_FN vec3 inScattering(vec3 position, float rho, vec3 ray, float enough, uint place, uint number, NPH_INOUT(uint) random,
+// Source function at a point of density `rho`: Σ over lights and the sky, per unit density, before σ_s. `random` is the
+// place's own state, `number` the picture's sample. What the light cache holds is taken from there: NPH_CACHED is true where it
+// has the lights' columns, NPH_NEAR where the way to it is marched; NPH_SKY is 0 where there is no sky, 1 where the cache has
+// it, 2 where it is marched for.
+NPH_FN vec3 inScattering(vec3 position, float rho, vec3 ray, float enough, uint number, NPH_INOUT(uint) random,
                          NPH_INOUT(vec4) cost) {
   vec3 sum = vec3(0.0f);
   vec3 again = NPH_OPEN ? scatteredAgain(opennessAt(position)) : vec3(params.octaves.y);
   int count = params.counts.x + (NPH_SKY == 2 ? 1 : 0);
   int done = 0;
   for (int i = 0; i < count; ++i) {
-    float start = params.counts.w != 0 ? nextUniform(random) : 0.5f;
+    float start = params.counts.w != 0 ? nextEven(random, number) : 0.5f;
     bool sky = NPH_SKY == 2 && i == params.counts.x;
     Lighting l;
     if (sky) {
-      l = lightingFromSky(ray, place, number);
+      l = lightingFromSky(ray, random, number);
     } else {
       l = lightingFrom(i, position);
     }

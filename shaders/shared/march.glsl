@@ -159,7 +159,7 @@ NPH_FN void join(NPH_INOUT(LitGroup) g, vec3 share, float place, float rho, floa
   g.rho += moved * (rho - g.rho);
 }
 
-// Marches along a ray; each step is read at the share `start` of its length; `random` is the pixel's own, `number` the
+// Marches along a ray; each step is read at the share `start` of its length; `random` is the pixel's own state, `number` the
 // sample's.
 NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
   MarchResult result = nothingMarched();
@@ -208,7 +208,7 @@ NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
       // Each place has numbers of its own, so that more or fewer drawn at another do not change them.
       uint placeRandom = hashBits(random ^ lit);
       vec3 position = r.origin + group.place * r.direction;
-      vec3 light = vec3(params.sigmaS) * inScattering(position, group.rho, r.ray, enough, lit, number, placeRandom, result.cost);
+      vec3 light = vec3(params.sigmaS) * inScattering(position, group.rho, r.ray, enough, number, placeRandom, result.cost);
       lit += 1u;
       result.radiance += light * group.share;
     }

@@ -10,7 +10,7 @@ NPH_FN uint hashBits(uint x) {
   return x;
 }
 
-// The state of one pixel's sequence: equal for equal pixel, sample number and seed.
+// The state of a sequence: equal for equal pixel (or particle), number and seed.
 NPH_FN uint randomState(uint x, uint y, uint number, uint seed) {
   return hashBits(x ^ hashBits(y ^ hashBits(number ^ hashBits(seed))));
 }
@@ -54,6 +54,12 @@ NPH_FN vec2 evenPlace(uint number, uint seed) {
   uint x = shuffledNumber(reversedBits(number), seed2);
   uint y = shuffledNumber(reversedBits(pascal), hashBits(seed2));
   return vec2(float(x >> 8u), float(y >> 8u)) * (1.0f / 16777216.0f);
+}
+
+// The next of a state's numbers for sample `number`, in [0, 1): over samples such a number covers them evenly.
+NPH_FN float nextEven(NPH_INOUT(uint) state, uint number) {
+  state = hashBits(state + 0x9e3779b9u);
+  return float(shuffledNumber(reversedBits(number), state) >> 8u) * (1.0f / 16777216.0f);
 }
 
 // Edge of the tile of blue noise that starts steps apart from those of neighbouring pixels (base/blue_noise.h).
