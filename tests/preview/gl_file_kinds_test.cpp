@@ -149,6 +149,7 @@ TEST(GlFileKinds, HalfFloatsLookLikeTheirFloatSibling) {
     ViewedScene view;
     view.camera = frameCamera(bricks, {0.0, 0.0, 1.0}, 0.6, double{kWidth} / kHeight);
     view.medium.sigmaS = {kSigmaT, kSigmaT, kSigmaT};
+    view.scene.march.adaptive = false;  // each step lit: which of several is drawn hangs on the last digits
     MarchPass pass(Filter::exact);
     pass.setParameters(marchParameters(view, bricks, kWidth, kHeight, 0, true));
     pictures[half] = marchOnGpu(pass, bricks, kWidth, kHeight, {0.5f, 0.5f}, 0).picture;

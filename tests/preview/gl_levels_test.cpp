@@ -85,6 +85,17 @@ TEST(GlLevels, WhatAPictureCannotResolveChangesItLittle) {
   }
 }
 
+TEST(GlLevels, VoxelsOfAThirdAndASixthOfAPixelAreReadAsTheyAreByDefault) {
+  needContext();
+  // Means over half a pixel would err by the percents above, and by more where a cloud is uneven.
+  for (const int across : {192, 384}) {
+    const BrickVolume bricks = cloudOf(across);
+    SeenVolume seen(bricks, Filter::hardware);
+    const int level = seen.atlasFor(0, viewFrom(40.0), kWidth, kHeight, false).layout().frame.level;
+    EXPECT_EQ(level, 0) << across;
+  }
+}
+
 TEST(GlLevels, StepsOfAPixelChangeThePictureLittleWhereVoxelsAreSmaller) {
   needContext();
   MarchPass pass(Filter::hardware);

@@ -57,6 +57,28 @@ TEST(LightCache, OpennessKeepsItsSamplesWhereAPictureIsSmall) {
   EXPECT_EQ(samples(kSmall, 1.0), samples(kLarge, 1.0));
 }
 
+TEST(LightCache, ThinMediaTakeOneNearStepAndSamplesAThirtiethOfADepthApart) {
+  constexpr int kEdge = 32;
+  const BrickVolume bricks = bricksFromDense(std::vector<float>(size_t{kEdge} * kEdge * kEdge, 1.0f),
+                                             glm::ivec3(kEdge), glm::ivec3(0), glm::dmat4(1.0));
+  ViewedScene view;
+  view.camera.target = glm::dvec3(0.5 * kEdge);
+  view.camera.position = glm::dvec3(-3.0 * kEdge, 0.5 * kEdge, 0.5 * kEdge);
+  view.scene.lights = {Sun{glm::dvec3(1.0, 0.0, 0.0), {1.0, 1.0, 1.0}}};
+  // Of a voxel: spacings that 0.03 is 6 and 3 voxels, less than the least of 2, and where nothing is thin.
+  constexpr double kBlock = 16.0, kApart = 0.03, kRounded = 1.2;
+  constexpr int kHeight = 1000;
+  for (const double depth : {0.005, 0.01, 0.025, 0.05}) {
+    view.medium = {{depth, depth, depth}, {0.0, 0.0, 0.0}, 0.0};
+    const auto p = marchParameters(view, bricks, kHeight, kHeight, 0, false);
+    const bool thin = depth < kApart;
+    EXPECT_EQ(p.cache.w, thin ? 1.0f : static_cast<float>(view.scene.march.cacheNearSteps)) << depth;
+    const double voxels = kBlock / (p.cacheShape.x - 1);
+    EXPECT_LE(voxels, kRounded * std::max(kApart / depth, view.scene.march.cacheVoxels)) << depth;
+    EXPECT_GE(kRounded * voxels, std::max(kApart / depth, view.scene.march.cacheVoxels)) << depth;
+  }
+}
+
 TEST(LightCache, OrdersLoseWhatAnOpenPlaceLetsOut) {
   // A ball 6 optical depths across, by its middle: the order beyond the first, light of which nothing is
   // hidden (a = 0), adds 1/(4π) ∫ σ e^(−σ s) (1 − d E(r)) ds, r the distance from the centre and E the mean

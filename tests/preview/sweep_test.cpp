@@ -103,7 +103,7 @@ TEST(Sweep, TriesEveryKindOfSettingOnce) {
     EXPECT_TRUE(names.insert(setting.name).second) << setting.name << " twice";
   for (int octaves = 0; octaves <= 8; ++octaves)
     EXPECT_EQ(names.count("march step 1, light cached every 2, octaves " + std::to_string(octaves) +
-                          ", voxels up to 0.5 px, 4 spp"),
+                          ", voxels up to 0.25 px, 4 spp"),
               1u)
         << octaves;
   for (const char* part : {"light by the chord", "powder", "texels r8,", "texels r16f", "texels r32f",
