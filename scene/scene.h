@@ -166,7 +166,7 @@ struct MarchSettings {
   double skyCacheVoxels = 4.0;    // the same for what the sky scatters
   double cacheNearVoxels = 8.0;   // marched towards a light before the volume is asked, from 0 to 16
   int cacheNearSteps = 4;         // in so many steps, from 0 to 16
-  double cacheDepth = 0.2;        // optical depth of a voxel of mean density above which light is marched
+  double cacheDepth = 0.05;       // optical depth of a voxel of mean density above which light is marched
                                   // for all the same, since the volume is then too coarse; >= 0
   double giveUp = 1e-4;           // transmittance below which a ray ends, in (0, 0.1]
   // No key of files; moving pictures set it: light comes from that volume however thick a voxel is.
