@@ -38,13 +38,23 @@ TEST(LightCache, FarOctavesSeeThroughWhatHidesTheSun) {
   EXPECT_NEAR(double{pixels[0].radiance.x} / expected, 1.0, 0.02);
 }
 
-TEST(LightCache, OpennessKeepsItsSamplesWhereAPictureIsSmall) {
-  constexpr int kEdge = 32;
-  const BrickVolume bricks = bricksFromDense(std::vector<float>(size_t{kEdge} * kEdge * kEdge, 1.0f),
-                                             glm::ivec3(kEdge), glm::ivec3(0), glm::dmat4(1.0));
+constexpr int kBlockEdge = 32;
+
+BrickVolume evenBlock() {
+  return bricksFromDense(std::vector<float>(size_t{kBlockEdge} * kBlockEdge * kBlockEdge, 1.0f),
+                         glm::ivec3(kBlockEdge), glm::ivec3(0), glm::dmat4(1.0));
+}
+
+ViewedScene viewOfTheBlock() {
   ViewedScene view;
-  view.camera.target = glm::dvec3(0.5 * kEdge);
-  view.camera.position = glm::dvec3(-3.0 * kEdge, 0.5 * kEdge, 0.5 * kEdge);
+  view.camera.target = glm::dvec3(0.5 * kBlockEdge);
+  view.camera.position = glm::dvec3(-3.0 * kBlockEdge, 0.5 * kBlockEdge, 0.5 * kBlockEdge);
+  return view;
+}
+
+TEST(LightCache, OpennessKeepsItsSamplesWhereAPictureIsSmall) {
+  const BrickVolume bricks = evenBlock();
+  ViewedScene view = viewOfTheBlock();
   view.medium = {{0.5, 0.5, 0.5}, {0.0, 0.0, 0.0}, 0.0};
   view.scene.environment.constant = {1.0, 1.0, 1.0};
   view.scene.march.cacheDepth = 1e3;  // the cache, however thick a voxel is
@@ -58,12 +68,8 @@ TEST(LightCache, OpennessKeepsItsSamplesWhereAPictureIsSmall) {
 }
 
 TEST(LightCache, ThinMediaTakeOneNearStepAndSamplesAThirtiethOfADepthApart) {
-  constexpr int kEdge = 32;
-  const BrickVolume bricks = bricksFromDense(std::vector<float>(size_t{kEdge} * kEdge * kEdge, 1.0f),
-                                             glm::ivec3(kEdge), glm::ivec3(0), glm::dmat4(1.0));
-  ViewedScene view;
-  view.camera.target = glm::dvec3(0.5 * kEdge);
-  view.camera.position = glm::dvec3(-3.0 * kEdge, 0.5 * kEdge, 0.5 * kEdge);
+  const BrickVolume bricks = evenBlock();
+  ViewedScene view = viewOfTheBlock();
   view.scene.lights = {Sun{glm::dvec3(1.0, 0.0, 0.0), {1.0, 1.0, 1.0}}};
   // Of a voxel: spacings that 0.03 is 6 and 3 voxels, less than the least of 2, and where nothing is thin.
   constexpr double kBlock = 16.0, kApart = 0.03, kRounded = 1.2;
