@@ -142,14 +142,14 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   constexpr double kBlock = kBlockBricks * kBrickCells;
   const float sigmaMax = std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z));
   const double depth = voxelDepth(bricks, frame, double{sigmaMax});
-  // Optical depths of a cell over which light hardly falls: of one whose way to the samples takes one step,
-  // and of one as wide as samples may lie apart there. Bulges are denser than the mean, which is what is
-  // known.
-  constexpr double kThinCell = 0.06, kThinSpacing = 0.03;
-  constexpr float kThinNearSteps = 1.0f;
+  // Optical depth of a cell over which light hardly falls: samples may lie that far apart, at most so many
+  // voxels, since bulges are denser than the mean, which is what is known; the way to them need not be
+  // marched.
+  constexpr double kThinCell = 0.06, kThinVoxels = 2.3;
   const double least = std::min(wider * march.cacheVoxels, kBlock);
   const bool isThin = depth > 0.0 && depth * least <= kThinCell;  // 0: the mean density is not known
-  const double cell = isThin ? std::min(std::max(least, kThinSpacing / depth), kBlock) : least;
+  const double widest = std::min(std::max(least, wider * kThinVoxels), kBlock);
+  const double cell = isThin ? std::min(kThinCell / depth, widest) : least;
   // Openness falls over a free way, however few pixels show it: factors hold where its samples stay.
   const double skyVoxels =
       open ? std::max(1.0, march.skyCacheVoxels / scaleOf(frame)) : wider * march.skyCacheVoxels;
@@ -162,12 +162,11 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   // mean.
   constexpr float kMixedBy = 0.5f;
   const bool good = wider * depth <= march.cacheDepth;
-  const float nearSteps = static_cast<float>(march.cacheNearSteps);
   const bool cached = lights && (good || march.alwaysCached);
   if (cached)
     p.cache = vec4(good ? shared::kColumnsInHalves : shared::kColumnsInBytes, kMixedBy * sigmaMax,
                    static_cast<float>(march.cacheNearVoxels),
-                   isThin ? std::min(kThinNearSteps, nearSteps) : nearSteps);
+                   isThin ? 0.0f : static_cast<float>(march.cacheNearSteps));
   constexpr float kGrowth = 1.2f, kSkyGrowth = 1.5f;
   p.cacheSteps = vec4(static_cast<float>(0.5 * cell), kGrowth, static_cast<float>(0.5 * skyCell), kSkyGrowth);
   // A picture's small suns fall between the few directions that are kept.
