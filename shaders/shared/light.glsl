@@ -65,7 +65,7 @@ NPH_FN Lighting lightingFrom(int i, vec3 position) {
 // its directions evenly, in an order of the place's own: `random`. Places that looked the same way together would make
 // pictures of few samples too bright or too dark as a whole.
 NPH_FN Lighting lightingFromSky(vec3 ray, uint random, uint number) {
-    uint turn = shuffledNumber(number, random);
+  uint turn = shuffledNumber(number, random);
   bool map = NPH_MAP && skyKind() == kSkyMap;
   bool byPhase = (turn & 1u) == 0u;
   bool byMap = map && (turn & 2u) != 0u;

@@ -29,16 +29,21 @@ NPH_FN uint reversedBits(uint x) {
   return ((x & 0x55555555u) << 1u) | ((x >> 1u) & 0x55555555u);
 }
 
-// Another order of all numbers, in which each aligned run of 2^k is again such a run, shuffled (nested uniform scrambling:
-// Laine and Karras, "Stratified sampling for stochastic transparency", 2011). A sequence taken in such an order stays as even,
-// and knows nothing of the sample's other sequences: two that go on in step cover a line of the square, not the square.
-NPH_FN uint shuffledNumber(uint number, uint seed) {
-  uint x = reversedBits(number) + seed;
+// Digits each changed by `seed` and by those below it alone (Laine and Karras, "Stratified sampling for stochastic
+// transparency", 2011): nested uniform scrambling, of digits in reverse.
+NPH_FN uint scrambledBits(uint x, uint seed) {
+  x += seed;
   x ^= x * 0x6c50b47cu;
   x ^= x * 0xb82f1e52u;
   x ^= x * 0xc7afe638u;
-  x ^= x * 0x8d22f6e6u;
-  return reversedBits(x);
+  return x ^ (x * 0x8d22f6e6u);
+}
+
+// Another order of all numbers, in which each aligned run of 2^k is again such a run, shuffled. A sequence taken in such an
+// order stays as even, and knows nothing of the sample's other sequences: two that go on in step cover a line of the square,
+// not the square.
+NPH_FN uint shuffledNumber(uint number, uint seed) {
+  return reversedBits(scrambledBits(reversedBits(number), seed));
 }
 
 // Place `number` in [0, 1)² of a sequence whose first 2^k places, and each aligned run of so many, have one in each box of
@@ -51,15 +56,15 @@ NPH_FN vec2 evenPlace(uint number, uint seed) {
   pascal ^= (pascal >> 8u) & 0x00ff00ffu;
   pascal ^= (pascal >> 16u) & 0x0000ffffu;
   uint seed2 = hashBits(seed);
-  uint x = shuffledNumber(reversedBits(number), seed2);
-  uint y = shuffledNumber(reversedBits(pascal), hashBits(seed2));
+  uint x = reversedBits(scrambledBits(number, seed2));
+  uint y = reversedBits(scrambledBits(pascal, hashBits(seed2)));
   return vec2(float(x >> 8u), float(y >> 8u)) * (1.0f / 16777216.0f);
 }
 
 // The next of a state's numbers for sample `number`, in [0, 1): over samples such a number covers them evenly.
 NPH_FN float nextEven(NPH_INOUT(uint) state, uint number) {
   state = hashBits(state + 0x9e3779b9u);
-  return float(shuffledNumber(reversedBits(number), state) >> 8u) * (1.0f / 16777216.0f);
+  return float(reversedBits(scrambledBits(number, state)) >> 8u) * (1.0f / 16777216.0f);
 }
 
 // Edge of the tile of blue noise that starts steps apart from those of neighbouring pixels (base/blue_noise.h).
