@@ -1,4 +1,4 @@
-// Halves, 8-bit samples and their errors. Depends on volume/brick_bounds.h and TBB.
+// Halves, 8-bit samples and their errors. Depends on base/half.h, volume/brick_bounds.h and TBB.
 #include "volume/brick_texel.h"
 
 #include <tbb/parallel_for.h>
@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/half.h"
 #include "volume/brick_bounds.h"
 
 namespace nephele {
@@ -23,31 +24,39 @@ constexpr float kLeastNormalHalf = 6.103515625e-5f;       // 2^-14
 constexpr float kSubnormalStep = 5.9604644775390625e-8f;  // 2^-24
 constexpr float kByte = 255.0f;
 
-/// Worst error of a slot's samples, its relative part and the rest, and the sum of those at the lower 8 of
-/// each axis.
-struct SlotFacts {
-  double error = 0.0, relative = 0.0, sum = 0.0;
+/// Worst error of a slot's samples: its relative part, and the rest.
+struct SlotErrors {
+  double error = 0.0, relative = 0.0;
 };
 
+// Of a half's normal values; what goes beyond it is counted as it is.
+constexpr double kHalfRelative = 0x1p-11;
+
 template <Texel texel>
-SlotFacts factsOf(const float* samples, float maximum) {
+SlotErrors errorsOf(const float* samples, float maximum) {
   const float scale = brick_bounds::bound(
       brick_bounds::codeFor(*std::max_element(samples, samples + kBrickVolume), maximum), maximum);
-  // Of a half's normal values; what goes beyond it is counted as it is.
-  constexpr double kHalfRelative = 0x1p-11, kTiny = 1e-300;
+  constexpr double kTiny = 1e-300;
   constexpr double allowed = texel == Texel::r16f ? kHalfRelative : 0.0;
-  SlotFacts facts;
-  for (int z = 0; z < kBrickSamples; ++z)
-    for (int y = 0; y < kBrickSamples; ++y)
-      for (int x = 0; x < kBrickSamples; ++x, ++samples) {
-        const double value = double{*samples};
-        if (std::max({x, y, z}) < kBrickCells) facts.sum += value;
-        const double error = std::abs(double{keptAs(texel, *samples, scale)} - value);
-        if (!(error > 0.0)) continue;  // most samples of a file of halves
-        facts.relative = std::max(facts.relative, std::min(error, allowed * value) / std::max(value, kTiny));
-        facts.error = std::max(facts.error, error - allowed * value);
-      }
-  return facts;
+  SlotErrors errors;
+  for (int i = 0; i < kBrickVolume; ++i) {
+    const double value = double{samples[i]};
+    const double error = std::abs(double{keptAs(texel, samples[i], scale)} - value);
+    if (!(error > 0.0)) continue;  // most samples of a file of halves
+    errors.relative = std::max(errors.relative, std::min(error, allowed * value) / std::max(value, kTiny));
+    errors.error = std::max(errors.error, error - allowed * value);
+  }
+  return errors;
+}
+
+/// The sum of a slot's samples at the lower 8 of each axis.
+double sumOf(const float* samples) {
+  double sum = 0.0;
+  for (int z = 0; z < kBrickCells; ++z)
+    for (int y = 0; y < kBrickCells; ++y)
+      for (int x = 0; x < kBrickCells; ++x)
+        sum += double{samples[(z * kBrickSamples + y) * kBrickSamples + x]};
+  return sum;
 }
 
 /// The longest way through a layer of cells of thickness 1 and extent 1, world units.
@@ -58,6 +67,75 @@ double longestWay(const glm::dmat4& worldFromIndex) {
     most = std::max(most, std::sqrt(world.x * world.x + world.y * world.y + world.z * world.z));
   }
   return most;
+}
+
+const float* slotOf(const BrickVolume& volume, size_t slot) {
+  return volume.samples.data() + slot * kBrickVolume;
+}
+
+/// Calls `take(brick, slot)` for each brick that is kept.
+template <class Take>
+void forEachSlot(const BrickVolume& volume, const Take& take) {
+  size_t i = 0;
+  for (glm::ivec3 b(0); b.z < volume.brickCount.z; ++b.z)
+    for (b.y = 0; b.y < volume.brickCount.y; ++b.y)
+      for (b.x = 0; b.x < volume.brickCount.x; ++b.x, ++i)
+        if (volume.index[i] != 0) take(b, volume.index[i] - 1);
+}
+
+/// The deepest ∫ ρ ds, world units, of the means over columns of bricks along the axes: of each column's 8 x
+/// 8 lattice lines, of which one is at least as deep.
+double deepestColumn(const BrickVolume& volume) {
+  std::vector<double> sums(volume.slotCount());
+  tbb::parallel_for(size_t{0}, sums.size(), [&](size_t slot) { sums[slot] = sumOf(slotOf(volume, slot)); });
+  const glm::ivec3 n = volume.brickCount;
+  double deepest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    std::vector<double> columns(static_cast<size_t>(n[u]) * static_cast<size_t>(n[v]), 0.0);
+    forEachSlot(volume, [&](const glm::ivec3& b, size_t slot) {
+      columns[static_cast<size_t>(b[v]) * static_cast<size_t>(n[u]) + static_cast<size_t>(b[u])] +=
+          sums[slot];
+    });
+    const glm::dvec4 side = volume.worldFromIndex[axis];
+    const double voxel = std::sqrt(side.x * side.x + side.y * side.y + side.z * side.z);
+    deepest = std::max(
+        deepest, voxel * *std::max_element(columns.begin(), columns.end()) / (kBrickCells * kBrickCells));
+  }
+  return deepest;
+}
+
+/// texelError by every `apart`th slot alone, which is at most that of all; `deepest` is deepestColumn().
+double errorOfSlots(const BrickVolume& volume, Texel texel, double deepest, size_t apart) {
+  std::vector<SlotErrors> errors(volume.slotCount());
+  const float maximum = static_cast<float>(volume.maximum);
+  tbb::parallel_for(size_t{0}, errors.size(), apart, [&](size_t slot) {
+    const float* samples = slotOf(volume, slot);
+    errors[slot] =
+        texel == Texel::r8 ? errorsOf<Texel::r8>(samples, maximum) : errorsOf<Texel::r16f>(samples, maximum);
+  });
+  double worst = 0.0, relative = 0.0;
+  for (const SlotErrors& slot : errors) relative = std::max(relative, slot.relative);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> layers(static_cast<size_t>(volume.brickCount[axis]), 0.0);
+    forEachSlot(volume, [&](const glm::ivec3& b, size_t slot) {
+      double& layer = layers[static_cast<size_t>(b[axis])];
+      layer = std::max(layer, errors[slot].error);
+    });
+    double error = 0.0;
+    for (const double layer : layers) error += layer;
+    worst = std::max(worst, error * kBrickCells * longestWay(volume.worldFromIndex));
+  }
+  return relative + (worst > 0.0 ? worst / deepest : 0.0);
+}
+
+/// What texelError of halves is at most, as far as the largest density alone tells.
+double halvesErrAtMost(const BrickVolume& volume, double deepest) {
+  if (volume.maximum > double{kLargestHalf}) return std::numeric_limits<double>::infinity();
+  const int layers = std::max({volume.brickCount.x, volume.brickCount.y, volume.brickCount.z});
+  const double worst =
+      0.5 * double{kSubnormalStep} * layers * kBrickCells * longestWay(volume.worldFromIndex);
+  return kHalfRelative + worst / deepest;
 }
 
 }  // namespace
@@ -103,46 +181,19 @@ float keptAs(Texel texel, float value, float scale) {
 
 double texelError(const BrickVolume& volume, Texel texel) {
   if (texel == Texel::r32f || volume.empty()) return 0.0;
-  std::vector<SlotFacts> facts(volume.slotCount());
-  tbb::parallel_for(size_t{0}, facts.size(), [&](size_t slot) {
-    const float* samples = volume.samples.data() + slot * kBrickVolume;
-    const float maximum = static_cast<float>(volume.maximum);
-    facts[slot] =
-        texel == Texel::r8 ? factsOf<Texel::r8>(samples, maximum) : factsOf<Texel::r16f>(samples, maximum);
-  });
-  const glm::ivec3 n = volume.brickCount;
-  double worst = 0.0, deepest = 0.0, relative = 0.0;
-  for (const SlotFacts& slot : facts) relative = std::max(relative, slot.relative);
-  for (int axis = 0; axis < 3; ++axis) {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    std::vector<double> layers(static_cast<size_t>(n[axis]), 0.0);
-    std::vector<double> columns(static_cast<size_t>(n[u]) * static_cast<size_t>(n[v]), 0.0);
-    size_t i = 0;
-    for (glm::ivec3 b(0); b.z < n.z; ++b.z)
-      for (b.y = 0; b.y < n.y; ++b.y)
-        for (b.x = 0; b.x < n.x; ++b.x, ++i) {
-          if (volume.index[i] == 0) continue;
-          const SlotFacts& slot = facts[volume.index[i] - 1];
-          double& layer = layers[static_cast<size_t>(b[axis])];
-          layer = std::max(layer, slot.error);
-          columns[static_cast<size_t>(b[v]) * static_cast<size_t>(n[u]) + static_cast<size_t>(b[u])] +=
-              slot.sum;
-        }
-    double error = 0.0;
-    for (const double layer : layers) error += layer;
-    worst = std::max(worst, error * kBrickCells * longestWay(volume.worldFromIndex));
-    // The mean over a column's 8 x 8 lattice lines, at most the deepest of them.
-    const glm::dvec4 side = volume.worldFromIndex[axis];
-    const double voxel = std::sqrt(side.x * side.x + side.y * side.y + side.z * side.z);
-    deepest = std::max(
-        deepest, voxel * *std::max_element(columns.begin(), columns.end()) / (kBrickCells * kBrickCells));
-  }
-  return relative + (worst > 0.0 ? worst / deepest : 0.0);
+  return errorOfSlots(volume, texel, deepestColumn(volume), 1);
 }
 
 Texel chooseTexel(const BrickVolume& volume) {
-  for (const Texel texel : {Texel::r8, Texel::r16f})
-    if (texelError(volume, texel) <= kTexelError) return texel;
+  if (volume.empty()) return Texel::r8;
+  const double deepest = deepestColumn(volume);
+  // A few slots mostly tell that bytes are too coarse, and the largest density that halves are not.
+  constexpr size_t kFew = 16;
+  const auto isGood = [&](Texel texel, size_t apart) {
+    return errorOfSlots(volume, texel, deepest, apart) <= kTexelError;
+  };
+  if (isGood(Texel::r8, kFew) && isGood(Texel::r8, 1)) return Texel::r8;
+  if (halvesErrAtMost(volume, deepest) <= kTexelError || isGood(Texel::r16f, 1)) return Texel::r16f;
   return Texel::r32f;
 }
 

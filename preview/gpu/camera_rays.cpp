@@ -100,9 +100,9 @@ void setLights(shared::MarchParameters& p, const std::vector<Light>& lights, con
   }
 }
 
-/// Optical depth of one of the frame's voxels of mean active density.
-double voxelDepth(const BrickVolume& bricks, const IndexFrame& frame, double sigmaMax) {
-  return sigmaMax * bricks.meanActive * scaleOf(frame) * voxelEdge(bricks);
+/// Optical depth of one of the frame's voxels of that density.
+double voxelDepth(double density, const BrickVolume& bricks, const IndexFrame& frame, double sigmaMax) {
+  return sigmaMax * density * scaleOf(frame) * voxelEdge(bricks);
 }
 
 /// How many of the frame's voxels count as one: more than 1 where they cover less than the scene's
@@ -141,15 +141,16 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   p.shadow.w = static_cast<float>(wider);
   constexpr double kBlock = kBlockBricks * kBrickCells;
   const float sigmaMax = std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z));
-  const double depth = voxelDepth(bricks, frame, double{sigmaMax});
-  // Optical depth of a cell over which light hardly falls: samples may lie that far apart, at most so many
-  // voxels, since bulges are denser than the mean, which is what is known; the way to them need not be
-  // marched.
-  constexpr double kThinCell = 0.06, kThinVoxels = 2.3;
+  const double depth = voxelDepth(bricks.meanActive, bricks, frame, double{sigmaMax});
+  const double densest = voxelDepth(bricks.maximum, bricks, frame, double{sigmaMax});
+  // Where light hardly falls over a cell of the mean density, the way to the samples need not be marched, and
+  // they may lie as far apart as a cell of the densest, which shades its neighbours most, takes this much; at
+  // most a brick, so that a block's fall of light is not taken for a straight one.
+  constexpr double kThinCell = 0.06, kDensestCell = 0.25;
   const double least = std::min(wider * march.cacheVoxels, kBlock);
   const bool isThin = depth > 0.0 && depth * least <= kThinCell;  // 0: the mean density is not known
-  const double widest = std::min(std::max(least, wider * kThinVoxels), kBlock);
-  const double cell = isThin ? std::min(kThinCell / depth, widest) : least;
+  const double widest = std::min(std::max(least, wider * kBrickCells), kBlock);
+  const double cell = isThin ? std::clamp(kDensestCell / densest, least, widest) : least;
   // Openness falls over a free way, however few pixels show it: factors hold where its samples stay.
   const double skyVoxels =
       open ? std::max(1.0, march.skyCacheVoxels / scaleOf(frame)) : wider * march.skyCacheVoxels;

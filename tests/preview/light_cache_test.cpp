@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <string>
 
 #include "preview/gpu/camera_rays.h"
 #include "preview/twin/march_picture.h"
@@ -67,18 +68,27 @@ TEST(LightCache, OpennessKeepsItsSamplesWhereAPictureIsSmall) {
   EXPECT_EQ(samples(kSmall, 1.0), samples(kLarge, 1.0));
 }
 
-TEST(LightCache, ThinMediaTakeNoNearStepsAndSamplesSomewhatFartherApart) {
-  const BrickVolume bricks = evenBlock();
+TEST(LightCache, ThinMediaTakeNoNearStepsAndSamplesFartherApartBeneathABrick) {
+  BrickVolume bricks = evenBlock();
   ViewedScene view = viewOfTheBlock();
   view.scene.lights = {Sun{glm::dvec3(1.0, 0.0, 0.0), {1.0, 1.0, 1.0}}};
-  // Thin is a cell of 2 voxels of at most 0.06: samples lie 16/7 voxels apart there, else as `cache` says.
+  struct Case {
+    double depth, bulge;  // of a voxel; the largest density over the mean
+    bool thin;
+    int samples;  // along a block of 16 voxels
+  };
+  // Thin is a cell of 2 voxels of at most 0.06. Samples lie a brick apart there, or 0.25 of the densest.
+  const Case cases[] = {{0.005, 1.0, true, 3}, {0.025, 1.0, true, 3},  {0.025, 2.0, true, 4},
+                        {0.025, 4.0, true, 7}, {0.025, 10.0, true, 9}, {0.04, 1.0, false, 9}};
   constexpr int kHeight = 1000;
-  for (const double depth : {0.005, 0.025, 0.04}) {
-    view.medium = {{depth, depth, depth}, {0.0, 0.0, 0.0}, 0.0};
+  const double mean = bricks.meanActive;
+  for (const Case& on : cases) {
+    SCOPED_TRACE(std::to_string(on.depth) + " by " + std::to_string(on.bulge));
+    bricks.maximum = on.bulge * mean;
+    view.medium = {{on.depth, on.depth, on.depth}, {0.0, 0.0, 0.0}, 0.0};
     const auto p = marchParameters(view, bricks, kHeight, kHeight, 0, false);
-    const bool thin = depth < 0.03;
-    EXPECT_EQ(p.cache.w, thin ? 0.0f : static_cast<float>(view.scene.march.cacheNearSteps)) << depth;
-    EXPECT_EQ(p.cacheShape.x, thin ? 8 : 9) << depth;
+    EXPECT_EQ(p.cache.w, on.thin ? 0.0f : static_cast<float>(view.scene.march.cacheNearSteps));
+    EXPECT_EQ(p.cacheShape.x, on.samples);
   }
 }
 
