@@ -87,34 +87,42 @@ class Sampling {
         height_(strided(request.height, request.stride)),
         estimate_(width_, height_) {}
 
-  /// Adds blocks [first, last) of `size` samples to every pixel.
-  void add(unsigned first, unsigned last, unsigned size) {
+  /// Adds blocks of `size` samples to each pixel until it has as many as `until` says.
+  void add(const std::vector<unsigned>& until, unsigned size) {
     constexpr int kTile = 16;  // neighbours share what lies in the caches
     const tbb::blocked_range2d<int> all(0, height_, kTile, 0, width_, kTile);
-    Progress progress("tracing", static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_),
-                      request_.quiet);
+    Progress progress("tracing", pixels(), request_.quiet);
     tbb::parallel_for(all, [&](const tbb::blocked_range2d<int>& tile) {
-      uint64_t looks = 0;
+      uint64_t looks = 0, paths = 0;
       for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
         for (int x = tile.cols().begin(); x != tile.cols().end(); ++x)
-          for (unsigned block = first; block != last; ++block) addBlock(x, y, block, size, looks);
+          for (const size_t at = traced(x, y); estimate_.blocksOf(at) < until[at]; paths += size)
+            addBlock(x, y, size, looks);
       looks_ += looks;
+      paths_ += paths;
       progress.advance(tile.rows().size() * tile.cols().size());
     });
   }
+  void add(unsigned until, unsigned size) { add(std::vector<unsigned>(pixels(), until), size); }
 
   const Estimate& estimate() const { return estimate_; }
   uint64_t looks() const { return looks_; }
+  double pathsPerPixel() const { return static_cast<double>(paths_) / static_cast<double>(pixels()); }
   size_t pixels() const { return static_cast<size_t>(width_) * static_cast<size_t>(height_); }
 
  private:
+  /// The number of a pixel among those that are traced.
+  size_t traced(int column, int row) const {
+    return static_cast<size_t>(row) * static_cast<size_t>(width_) + static_cast<size_t>(column);
+  }
+
   /// `column` and `row` are of the pixels that are traced. Random numbers are those of the whole picture.
-  void addBlock(int column, int row, unsigned block, unsigned size, uint64_t& looks) {
+  void addBlock(int column, int row, unsigned size, uint64_t& looks) {
     const int x = column * request_.stride + request_.stride / 2,
               y = row * request_.stride + request_.stride / 2;
     const size_t pixel =
         static_cast<size_t>(y) * static_cast<size_t>(request_.width) + static_cast<size_t>(x);
-    const uint64_t seed = seedOf(request_.seed, pixel, block);
+    const uint64_t seed = seedOf(request_.seed, pixel, estimate_.blocksOf(traced(column, row)));
     BlockMean mean;
     const float share = 1.0f / static_cast<float>(size);
     for (unsigned i = 0; i < size; ++i) {
@@ -138,8 +146,7 @@ class Sampling {
       mean.taken += share * sample.taken;
       mean.takenDistance += share * sample.taken * (static_cast<float>(entering->before) + sample.distance);
     }
-    estimate_.add(static_cast<size_t>(row) * static_cast<size_t>(width_) + static_cast<size_t>(column), block,
-                  mean);
+    estimate_.add(traced(column, row), mean);
   }
 
   void addStaged(const glm::dvec3& along, const StratifiedPoint& point, float share, BlockMean& mean,
@@ -167,7 +174,7 @@ class Sampling {
   SkyBehind sky_;
   int width_, height_;
   Estimate estimate_;
-  std::atomic<uint64_t> looks_{0};
+  std::atomic<uint64_t> looks_{0}, paths_{0};
 };
 
 /// Samples of a block: as many as leave `kBlocks` of them, since points of one block are spread evenly and
@@ -177,25 +184,29 @@ unsigned blockSize(unsigned samples) {
   return std::clamp(std::bit_floor(samples / kBlocks), 1u, kLargest);
 }
 
-/// Samples until the picture's noise is surely at most `error`, or a pixel has its most samples. Returns how
-/// many blocks that took.
-unsigned sampleUntil(Sampling& sampling, double error, unsigned size, unsigned mostSamples) {
-  constexpr unsigned kFirst = 8;    // fewer tell the noise badly
-  constexpr double kAtOnce = 2.0;   // grow by at most this factor between two looks at the noise
-  constexpr double kMargin = 1.02;  // rather a little too far than once more
-  unsigned blocks = 0;
-  for (unsigned until = kFirst;;) {
-    sampling.add(blocks, until, size);
-    blocks = until;
-    const double reached = sampling.estimate().relativeErrorBound(blocks);
-    if (reached <= error || (mostSamples > 0 && blocks * size >= mostSamples)) return blocks;
-    const double ratio = std::min(kAtOnce, kMargin * reached * reached / (error * error));
-    until = blocks + 2 * static_cast<unsigned>(std::ceil(0.5 * (ratio - 1.0) * blocks));
+/// Samples until the picture's noise is surely at most `error`, or pixels have `mostSamples` on average.
+/// After the first blocks pixels get more of them the noisier their neighbourhood is.
+void sampleUntil(Sampling& sampling, double error, unsigned size, unsigned mostSamples) {
+  constexpr unsigned kFirst = 8;       // fewer tell the noise badly
+  constexpr double kAtOnce = 2.0;      // grow by at most this factor between two looks at the noise
+  constexpr double kMargin = 1.02;     // rather a little too far than once more
+  constexpr float kLeastShare = 0.2f;  // of the mean: what the first blocks did not find is found yet
+  sampling.add(kFirst, size);
+  const std::vector<float> shares = sampling.estimate().shares(kLeastShare);
+  for (double blocks = kFirst;;) {  // on average
+    const double reached = sampling.estimate().relativeErrorBound();
+    if (reached <= error || (mostSamples > 0 && blocks * size >= mostSamples)) return;
+    blocks *= std::min(kAtOnce, kMargin * reached * reached / (error * error));
+    std::vector<unsigned> until(shares.size());
+    for (size_t i = 0; i < until.size(); ++i)  // even numbers, since there are two halves
+      until[i] = std::max(kFirst, 2 * static_cast<unsigned>(std::ceil(0.5 * blocks * double{shares[i]})));
+    sampling.add(until, size);
   }
 }
 
 /// Nothing but what stands behind, seen through the pixels' centres.
-Picture emptyPicture(const ViewedScene& view, const PictureRequest& request, unsigned blocks) {
+Picture emptyPicture(const ViewedScene& view, const PictureRequest& request) {
+  constexpr unsigned kBlocks = 2;  // so that there are halves
   const int width = strided(request.width, request.stride), height = strided(request.height, request.stride);
   const SkyBehind sky(view);
   const CameraRays rays(view.camera, BrickVolume{}, request.width, request.height);
@@ -205,11 +216,11 @@ Picture emptyPicture(const ViewedScene& view, const PictureRequest& request, uns
     for (int column = 0; column < width; ++column) {
       BlockMean mean;
       if (sky.shown) sky.add(glm::vec3(rays.along(centre(column), centre(row))), 1.0f, glm::vec3(1.0f), mean);
-      for (unsigned block = 0; block < blocks; ++block)
+      for (unsigned block = 0; block < kBlocks; ++block)
         estimate.add(static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column),
-                     block, mean);
+                     mean);
     }
-  return estimate.picture(blocks);
+  return estimate.picture();
 }
 
 class ReferenceMethod : public Method {
@@ -221,7 +232,6 @@ class ReferenceMethod : public Method {
   Picture render(const ViewedScene& view, const PictureRequest& request, PictureCost& cost) override {
     NEPHELE_CHECK_EQ(bricks_ != nullptr, true);
     const auto start = Clock::now();
-    unsigned blocks = 2;
     Picture picture;
     if (view.scene.stage.on && request.bounces != 0)
       throw InputError({}, "the reference renders the stage by the first order alone", "ask for --bounces 0");
@@ -229,23 +239,21 @@ class ReferenceMethod : public Method {
     if (view.scene.stage.on && (bricks_->empty() || !medium))
       throw InputError({}, "the reference renders the stage around a medium, and there is none");
     if (bricks_->empty() || !medium) {
-      picture = emptyPicture(view, request, blocks);
+      picture = emptyPicture(view, request);
       cost = {};
     } else {
       Sampling sampling(*bricks_, view, request);
       constexpr unsigned kBlockTowardsError = 16;
       const unsigned size = request.error > 0.0 ? kBlockTowardsError : blockSize(request.samples);
-      if (request.error > 0.0) {
-        blocks = sampleUntil(sampling, request.error, size, request.mostSamples);
-      } else {
-        blocks = (request.samples + size - 1) / size;
-        sampling.add(0, blocks, size);
-      }
-      picture = sampling.estimate().picture(blocks);
+      if (request.error > 0.0)
+        sampleUntil(sampling, request.error, size, request.mostSamples);
+      else
+        sampling.add((request.samples + size - 1) / size, size);
+      picture = sampling.estimate().picture();
       cost.densitySamplesPerPixel =
           static_cast<double>(sampling.looks()) / static_cast<double>(sampling.pixels());
-      cost.relativeError = sampling.estimate().relativeError(blocks);
-      cost.pathsPerPixel = static_cast<double>(blocks) * size;
+      cost.relativeError = sampling.estimate().relativeError();
+      cost.pathsPerPixel = sampling.pathsPerPixel();
       cost.gpuBytes = 0;
     }
     cost.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();

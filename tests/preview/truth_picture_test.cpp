@@ -272,17 +272,17 @@ TEST(TruthPicture, TheNoisesBoundIsSeldomExceeded) {
           mean.radiance[c] = static_cast<float>(normal(numbers));
           mean.transmittance[c] = 0.0f;
         }
-        estimate.add(pixel, block, mean);
+        estimate.add(pixel, mean);
       }
-    const Picture picture = estimate.picture(kBlocks);
+    const Picture picture = estimate.picture();
     double error = 0.0;
     for (size_t c = 0; c < 3; ++c) {
       double squares = 0.0;
       for (const float value : picture.planes[c]) squares += (double{value} - 1.0) * (double{value} - 1.0);
       error += std::sqrt(squares / (kSize * kSize)) / 3.0;
     }
-    aboveEstimate += error > estimate.relativeError(kBlocks) ? 1 : 0;
-    aboveBound += error > estimate.relativeErrorBound(kBlocks) ? 1 : 0;
+    aboveEstimate += error > estimate.relativeError() ? 1 : 0;
+    aboveBound += error > estimate.relativeErrorBound() ? 1 : 0;
   }
   EXPECT_GT(aboveEstimate, kTrials / 3);
   EXPECT_LT(aboveBound, kTrials / 40);  // 2.5% for one channel; the mean of three scatters less
