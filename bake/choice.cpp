@@ -21,7 +21,7 @@ constexpr double kFirstAlongLongest = 16.0, kFirstAlongShortest = 2.0;
 constexpr int kBisections = 3;
 // Of more active voxels nothing is chosen: they take 10 GB in memory.
 constexpr double kMostVoxels = 2e9;
-// Particles are baked to be measured; a reference of more active voxels takes 3 GB with its bricks.
+// Leaves of particles are held to be measured; a reference of more active voxels takes 3 GB with its bricks.
 constexpr double kMostBaked = 2.5e8;
 // A reference has as many times the voxels.
 constexpr double kEightTimes = 8.0;
@@ -128,19 +128,16 @@ class Search {
   Choice run() {
     const auto start = std::chrono::steady_clock::now();
     size_ = firstSize();
-    // Particles are baked whole however few the rays are: the search then sees all rays at once.
-    rays_.emplace(baker_, asset_.particles ? kConfirmingRays : kChoiceRays, kSearchSeed);
+    rays_.emplace(baker_, kChoiceRays, kSearchSeed);
     descend();
     bisect();
     choice_.asset = wholeLook(size_);
     if (!(asset_.precisionGiven && asset_.precision == Precision::single)) takeHalf();
     takeFewerOctaves();
-    const std::vector<Rays> groups = confirmingRays();
+    // Rays that had no part in the search.
+    const std::vector<Rays> groups = Rays(baker_, kConfirmingRays, kConfirmingSeed).groups(kChoiceRays);
     std::vector<Seen> references;
-    if (asset_.particles)
-      references.push_back(std::move(reference_));
-    else
-      confirm(groups, references);
+    confirm(groups, references);
     if (!asset_.densityStepGiven) takeStep(groups, references);
     tellWhatIsLeftOut();
     choice_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -249,12 +246,6 @@ class Search {
   void takeFewerOctaves() {
     for (int most = largestOctaves(asset_) - 1; most >= 1; --most)
       if (!take(lookOf(asset_, size_, choice_.asset.precision, most))) return;
-  }
-
-  /// Rays that had no part in the search; for particles, which are seen by so many from the start, the same.
-  std::vector<Rays> confirmingRays() const {
-    if (asset_.particles) return {*rays_};
-    return Rays(baker_, kConfirmingRays, kConfirmingSeed).groups(kChoiceRays);
   }
 
   /// Until those rays hold too: octaves back first, then finer voxels.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "bake/particle_sources.h"
@@ -36,6 +37,8 @@ struct ParticleRun::State {
   std::optional<int> viewed;  // the frame that the view shows
   ParticleView view;
   std::optional<Box> everyFrame;  // the box of all frames, where the recipe asks for one; may be empty
+  /// What densityAlong() found of the view's kernels, by voxel size and octaves.
+  mutable std::map<std::pair<double, int>, std::vector<double>> sums;
 
   /// "asset 'plume', frame 3: ".
   std::string name() const {
@@ -224,7 +227,8 @@ ParticleRun::ParticleRun(const Pipeline& pipeline, const Asset& asset, const std
                        nullptr,
                        std::nullopt,
                        {},
-                       std::nullopt}) {
+                       std::nullopt,
+                       {}}) {
   for (size_t n = 0; n < asset.particles->emitters.size(); ++n)
     state_->sources.push_back(makeSiteSource(asset.particles->emitters[n], asset.particleFiles[n].path));
 }
@@ -240,6 +244,7 @@ uint64_t ParticleRun::moveTo(std::optional<int> frame) {
     const uint64_t before = s.simulation->stepsDone();
     s.advance(frame.value_or(0));
     s.view = s.simulation->view();
+    s.sums.clear();
     return s.simulation->stepsDone() - before;
   } catch (const SimulationError& error) {
     throw InputError(s.asset.where, s.name() + error.what());
@@ -250,9 +255,14 @@ Splatted ParticleRun::splatted(const Asset& look) const {
   return state_->splatWith(state_->splatSettings(look));
 }
 
-Splatted ParticleRun::densityOf(const Asset& look) const {
+Splatted ParticleRun::densityAlong(std::span<const Chord> chords, const Asset& look) const {
   SplatSettings settings = state_->splatSettings(look);
   settings.vel = settings.temperature = settings.age = false;
+  // Points and the smallest are spread over the voxels round them.
+  const Box box = grown(state_->reached(), 2.0 * look.voxelSize);
+  const ChordVoxels read(chords, look.voxelSize, box.low, box.high);
+  const SplatMeasure measure{read, state_->sums[{look.voxelSize, look.mostOctaves}]};
+  settings.measure = &measure;
   return state_->splatWith(settings);
 }
 

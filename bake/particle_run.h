@@ -4,11 +4,13 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "bake/pipeline.h"
 #include "bake/splat.h"
 #include "particles/simulation.h"
+#include "volume/chords.h"
 
 namespace nephele {
 
@@ -46,8 +48,8 @@ class ParticleRun {
   /// The particles as they are, splatted with the voxel size, precision, density step and cutoff of `look`,
   /// an asset like the run's own. Throws InputError on particles that cannot be splatted.
   Splatted splatted(const Asset& look) const;
-  /// The same without the grids beside density, for who only measures it.
-  Splatted densityOf(const Asset& look) const;
+  /// The same without the grids beside density, and with those voxels alone that the rays read.
+  Splatted densityAlong(std::span<const Chord> chords, const Asset& look) const;
 
   /// The box of the particles as they are, with their radii; empty where there are none.
   Box extent() const;

@@ -14,6 +14,7 @@
 
 #include "bake/splat_batch.h"
 #include "bake/splat_leaf.h"
+#include "bake/splat_scales.h"
 #include "bake/splat_shaped.h"
 #include "bake/splat_tile.h"
 #include "base/hash.h"
@@ -33,6 +34,8 @@ using openvdb::Coord;
 // Particles that a tile takes in at a time: their records stay in the second cache, and their sums are added
 // up apart, so that ten million particles in one voxel lose no digits.
 constexpr size_t kBatch = 16384;
+
+constexpr int kLeavesOfBlock = 64, kBlocksOfTile = kLeavesOfTile / kLeavesOfBlock;
 
 /// Room for one tile's particles and voxels, which a thread keeps for its next tile. Voxels are all 0 between
 /// tiles, but for what lies outside of the tile.
@@ -70,48 +73,13 @@ class Splatter {
         extras_(leaves_.extras()) {}
 
   Splatted run() {
-    findScales();
+    scales_ = splatScales(particles_, settings_, places_, sorter_, shaping_);
     std::vector<TileResult> tiles(places_.tileCount());
     tbb::parallel_for(size_t(0), tiles.size(), [&](size_t t) { tiles[t] = fillTile(t); });
     return gather(tiles);
   }
 
  private:
-  /// What each particle's kernel is multiplied by: its mass over the voxel's volume and the kernel's sum.
-  void findScales() {
-    if (sorter_.allSmall()) return;
-    scales_.resize(particles_.size());
-    if (places_.anyShaped()) shaping_.makeRoom();
-    const double volume = settings_.voxelSize * settings_.voxelSize * settings_.voxelSize;
-    constexpr size_t kAtOnce = 256;
-    tbb::parallel_for(size_t(0), (particles_.size() + kAtOnce - 1) / kAtOnce, [&](size_t block) {
-      const size_t begin = block * kAtOnce, end = std::min(particles_.size(), begin + kAtOnce);
-      SplatRecord records[kAtOnce]{};
-      size_t owner[kAtOnce], count = 0;
-      double sums[kAtOnce];
-      for (size_t n = begin; n < end; ++n) {
-        const double density = double(particles_.mass[n]) / volume;
-        if (places_.anyShaped()) {
-          const SplatFrame f = places_.frameOf(n);
-          if (f.way == SplatWay::shaped) {
-            const double sum = shaping_.sum(n, f);
-            // Where noise has eaten all of it, it is kept as a point.
-            scales_[n] = sum > 0.0 ? float(density / sum) : -float(density);
-            continue;
-          }
-        }
-        const SplatRecord record = places_.placeOf(n);
-        scales_[n] = float(density);
-        if (record.radius <= 1.0f || sorter_.isSmall(record.radius)) continue;
-        owner[count] = n;
-        records[count++] = record;
-      }
-      splatSums(settings_.kernel, records, count, sums);
-      for (size_t k = 0; k < count; ++k)
-        scales_[owner[k]] = float(double(particles_.mass[owner[k]]) / volume / sums[k]);
-    });
-  }
-
   TileResult fillTile(size_t tile) const {
     const glm::ivec3 at = places_.tileOrigin(tile);
     const Coord origin(at.x, at.y, at.z);
@@ -128,12 +96,16 @@ class Splatter {
       splatIntoTile(settings_.kernel, batch.small.data(), batch.smallOrder.data(), batch.small.size(),
                     {room.values.data(), room.touched.data()});
       if (batch.list.empty()) continue;
-      forEachLeaf(batch.list.size(), [&](int leaf) { addToLeaf(batch, origin, leaf, leaves[size_t(leaf)]); });
+      forEachOf(kLeavesOfTile, batch.list.size(),
+                [&](int leaf) { addToLeaf(batch, origin, leaf, leaves[size_t(leaf)]); });
+      if (settings_.measure)
+        forEachOf(kBlocksOfTile, batch.list.size(),
+                  [&](int block) { addToBlock(batch, origin, block, leaves); });
     }
     TileResult result;
     std::vector<SplatLedger> ledgers(kLeavesOfTile);
     std::vector<float> maxima(kLeavesOfTile, 0.0f);
-    forEachLeaf(all.size(), [&](int leaf) {
+    forEachOf(kLeavesOfTile, all.size(), [&](int leaf) {
       const size_t n = size_t(leaf);
       takeLeaf(origin, leaf, room, leaves[n]);
       if (leaves[n].density) leaves_.close(originOf(origin, leaf), leaves[n], ledgers[n], maxima[n]);
@@ -155,17 +127,17 @@ class Splatter {
     return result;
   }
 
-  /// Calls body(leaf) for each leaf of a tile, in parallel where there is much to do: a tile may hold most of
+  /// Calls body(n) for each part of a tile, in parallel where there is much to do: a tile may hold most of
   /// the particles.
   template <class Body>
-  static void forEachLeaf(size_t work, const Body& body) {
+  static void forEachOf(int count, size_t work, const Body& body) {
     constexpr size_t kWorthSharing = 8192;
     if (work < kWorthSharing) {
-      for (int leaf = 0; leaf < kLeavesOfTile; ++leaf) body(leaf);
+      for (int n = 0; n < count; ++n) body(n);
       return;
     }
     // Isolated, so that a thread that waits here does not begin another tile.
-    tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, kLeavesOfTile, body); });
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, count, body); });
   }
 
   static Coord originOf(const Coord& tile, int leaf) {
@@ -189,30 +161,66 @@ class Splatter {
   void addToLeaf(const SplatBatch& batch, const Coord& tile, int leaf, OpenLeaf& open) const {
     const size_t first = size_t(leaf * kSplatWays);
     if (batch.starts[first] == batch.starts[first + kSplatWays]) return;
-    const Coord inTile = originOf(Coord(0), leaf);
+    const Coord inTile = originOf(Coord(0), leaf), origin = tile + inTile;
+    if (!isRead(origin)) return;
     if (!open.density) {
-      leaves_.open(tile + inTile, open);
-      addBatch(batch, tile, inTile, leaf,
+      leaves_.open(origin, open);
+      addBatch(batch, origin, inTile, leaf,
                {open.density->buffer().data(), extras_ ? open.extras->values : nullptr});
       return;
     }
     float density[kLeafVoxels] = {};
     ExtraSums extras;
     if (extras_) std::memset(extras.values, 0, sizeof extras.values);
-    addBatch(batch, tile, inTile, leaf, {density, extras_ ? extras.values : nullptr});
+    addBatch(batch, origin, inTile, leaf, {density, extras_ ? extras.values : nullptr});
     float* const whole = open.density->buffer().data();
     for (int v = 0; v < kLeafVoxels; ++v) whole[v] += density[v];
     for (int e = 0; e < kExtraCount && extras_; ++e)
       for (int v = 0; v < kLeafVoxels; ++v) open.extras->values[e][v] += extras.values[e][v];
   }
 
-  void addBatch(const SplatBatch& batch, const Coord& tile, const Coord& inTile, int leaf,
+  bool isRead(const Coord& leaf) const {
+    return !settings_.measure || settings_.measure->only.ofLeaf({leaf.x(), leaf.y(), leaf.z()});
+  }
+
+  void addBatch(const SplatBatch& batch, const Coord& origin, const Coord& inTile, int leaf,
                 const SplatLeaf& sums) const {
     const std::span<const uint32_t> round = batch.listOf(leaf, SplatWay::round);
     splatIntoLeaf(settings_.kernel, batch.records.data(), extras_ ? batch.extras.data() : nullptr,
                   round.data(), round.size(), inTile.data(), sums);
     for (const uint32_t k : batch.listOf(leaf, SplatWay::point)) addPoint(batch, k, inTile, sums);
-    for (const uint32_t k : batch.listOf(leaf, SplatWay::shaped)) addShaped(batch, k, tile, inTile, sums);
+    if (settings_.measure) return;  // shaped ones are added by blocks
+    for (const uint32_t k : batch.listOf(leaf, SplatWay::shaped)) addShaped(batch, k, origin, sums);
+  }
+
+  /// Adds shaped particles to those voxels of a block of leaves that are read.
+  void addToBlock(const SplatBatch& batch, const Coord& tile, int block,
+                  std::vector<OpenLeaf>& leaves) const {
+    std::vector<PartOfLeaf> parts;
+    std::vector<char> reaches(batch.records.size(), 0);
+    for (int n = 0; n < kLeavesOfBlock; ++n) {
+      const int leaf = leafOfBlock(block, n);
+      const std::span<const uint32_t> shaped = batch.listOf(leaf, SplatWay::shaped);
+      OpenLeaf& open = leaves[size_t(leaf)];
+      if (shaped.empty() || !open.density) continue;
+      for (const uint32_t k : shaped) reaches[k] = 1;
+      const Coord origin = originOf(tile, leaf);
+      const glm::ivec3 at(origin.x(), origin.y(), origin.z());
+      if (const auto read = settings_.measure->only.ofLeaf(at))
+        parts.push_back({at, *read, open.density->buffer().data()});
+    }
+    if (parts.empty()) return;
+    for (size_t k = 0; k < reaches.size(); ++k)
+      if (reaches[k])
+        shaping_.add(batch.owners[k], places_.frameOf(batch.owners[k]), batch.records[k].scale, parts);
+  }
+
+  /// Blocks of 4³ leaves, by eights that lie together.
+  static int leafOfBlock(int block, int n) {
+    const auto along = [&](int axis) {
+      return (block >> axis & 1) << 2 | (n >> (axis + 3) & 1) << 1 | (n >> axis & 1);
+    };
+    return (along(2) * kTileLeaves + along(1)) * kTileLeaves + along(0);
   }
 
   void addWeight(const SplatBatch& batch, uint32_t k, int voxel, float weight, const SplatLeaf& sums) const {
@@ -238,11 +246,9 @@ class Splatter {
     }
   }
 
-  void addShaped(const SplatBatch& batch, uint32_t k, const Coord& tile, const Coord& inTile,
-                 const SplatLeaf& sums) const {
+  void addShaped(const SplatBatch& batch, uint32_t k, const Coord& origin, const SplatLeaf& sums) const {
     const size_t n = batch.owners[k];
     const SplatFrame f = places_.frameOf(n);
-    const Coord origin = tile + inTile;
     float weights[kLeafVoxels];
     if (!shaping_.weights(n, f, {origin.x(), origin.y(), origin.z()}, weights)) return;
     for (int v = 0; v < kLeafVoxels; ++v)
@@ -323,7 +329,7 @@ class Splatter {
   const SplatSettings& settings_;
   const SplatPlaces places_;
   mutable tbb::enumerable_thread_specific<TileRoom> rooms_;
-  std::vector<float> scales_;  // below 0: a point, since noise left nothing else
+  std::vector<float> scales_;
   const SplatLeaves leaves_;
   SplatShaping shaping_;
   const SplatSorter sorter_;

@@ -14,6 +14,7 @@
 #include "bake/fields/field.h"
 #include "particles/particles.h"
 #include "volume/bricks.h"
+#include "volume/chord_voxels.h"
 #include "volume/provenance.h"
 
 namespace nephele {
@@ -27,6 +28,15 @@ struct SplatParticles {
   size_t size() const { return x.size(); }
 };
 
+/// What is left out where densities are read along rays: voxels beside `only` may hold anything, and masses
+/// of wide stretched or eroded particles are found from some of their voxels, to kMassTolerance.
+struct SplatMeasure {
+  const ChordVoxels& only;
+  /// Sums of such particles' kernels at this voxel size: empty to be found, else those that the same
+  /// particles had before.
+  std::vector<double>& sums;
+};
+
 struct SplatSettings {
   double voxelSize = 1.0;  // world units, > 0; sample (0, 0, 0) lies at the world's origin
   SplatKernel kernel = SplatKernel::wendland;
@@ -36,8 +46,9 @@ struct SplatSettings {
   double shutterSeconds = 0.0;
   bool vel = false, temperature = false, age = false;  // grids beside density
   FieldPtr erosion;  // read in each particle's frame: its centre is the origin, its radius 1; null for none
-  double erosionAmount = 0.0;  // radii per unit of the field; values below 0 eat nothing
-  std::optional<Box> box;      // the active box of every frame, world units
+  double erosionAmount = 0.0;             // radii per unit of the field; values below 0 eat nothing
+  std::optional<Box> box;                 // the active box of every frame, world units
+  const SplatMeasure* measure = nullptr;  // for who looks along rays alone; null for all voxels
 };
 
 /// Masses in density · world units³: given = splatted + outsideBox (up to rounding), splatted = stored +

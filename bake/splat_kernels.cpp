@@ -176,6 +176,14 @@ struct Line {
   }
 };
 
+/// Squared distances in radii where a field has eaten into the particle.
+HWY_INLINE V eaten(V squared, const float* field, float erosion) {
+  const D d;
+  const auto depth = hn::Mul(hn::Max(hn::LoadU(d, field), hn::Zero(d)), hn::Set(d, erosion));
+  const auto q = hn::Add(hn::Sqrt(squared), depth);
+  return hn::Mul(q, q);
+}
+
 template <class Kernel>
 double shapedWith(const SplatRecord& p, const SplatShape& shape, const int32_t origin[3], const float* field,
                   float* weights) {
@@ -194,12 +202,7 @@ double shapedWith(const SplatRecord& p, const SplatShape& shape, const int32_t o
       const size_t offset = size_t(x * kLeafEdge + y) * kLeafEdge;
       for (size_t k = 0; k < kParts; ++k) {
         auto squared = line.at(dx, dy, dz.part[k]);
-        if (field) {
-          const auto eaten = hn::Mul(hn::Max(hn::LoadU(d, field + offset + k * kLanes), hn::Zero(d)),
-                                     hn::Set(d, shape.erosion));
-          const auto q = hn::Add(hn::Sqrt(squared), eaten);
-          squared = hn::Mul(q, q);
-        }
+        if (field) squared = eaten(squared, field + offset + k * kLanes, shape.erosion);
         const auto weight = Kernel::at(D(), squared);
         hn::StoreU(weight, d, weights + offset + k * kLanes);
         plane.part[k] = hn::Add(plane.part[k], weight);
@@ -208,6 +211,22 @@ double shapedWith(const SplatRecord& p, const SplatShape& shape, const int32_t o
     sum += sumOf(plane);
   }
   return sum;
+}
+
+template <class Kernel>
+void shapedAtWith(size_t count, const float* squared, const float* field, float erosion, float* weights) {
+  const D d;
+  for (size_t n = 0; n < count; n += kLanes) {
+    const auto own = hn::LoadU(d, squared + n);
+    hn::StoreU(Kernel::at(d, field ? eaten(own, field + n, erosion) : own), d, weights + n);
+  }
+}
+
+void shapedAt(SplatKernel kernel, size_t count, const float* squared, const float* field, float erosion,
+              float* weights) {
+  kernel == SplatKernel::gaussian   ? shapedAtWith<Gaussian>(count, squared, field, erosion, weights)
+  : kernel == SplatKernel::wendland ? shapedAtWith<Wendland>(count, squared, field, erosion, weights)
+                                    : shapedAtWith<SmoothSphere>(count, squared, field, erosion, weights);
 }
 
 SplatLosses losses(const float* before, const float* stored, float cutoff) {
@@ -241,6 +260,7 @@ namespace nephele {
 HWY_EXPORT(sums);
 HWY_EXPORT(intoLeaf);
 HWY_EXPORT(shaped);
+HWY_EXPORT(shapedAt);
 HWY_EXPORT(losses);
 
 void splatSums(SplatKernel kernel, const SplatRecord* records, size_t count, double* sums) {
@@ -255,6 +275,11 @@ void splatIntoLeaf(SplatKernel kernel, const SplatRecord* records, const SplatEx
 double splatShaped(SplatKernel kernel, const SplatRecord& record, const SplatShape& shape,
                    const int32_t origin[3], const float* field, float* weights) {
   return HWY_DYNAMIC_DISPATCH(shaped)(kernel, record, shape, origin, field, weights);
+}
+
+void splatShapedAt(SplatKernel kernel, size_t count, const float* squared, const float* field, float erosion,
+                   float* weights) {
+  HWY_DYNAMIC_DISPATCH(shapedAt)(kernel, count, squared, field, erosion, weights);
 }
 
 SplatLosses splatLosses(const float* before, const float* stored, float cutoff) {

@@ -78,6 +78,11 @@ void splatIntoTile(SplatKernel kernel, const SplatRecord* records, const uint32_
 double splatShaped(SplatKernel kernel, const SplatRecord& record, const SplatShape& shape,
                    const int32_t origin[3], const float* field, float* weights);
 
+/// The same at single voxels: `squared` distances from the particle's line in radii, `field` there or null.
+/// All arrays are read and written up to the next multiple of kLeafEdge.
+void splatShapedAt(SplatKernel kernel, size_t count, const float* squared, const float* field, float erosion,
+                   float* weights);
+
 /// What a leaf loses between its sums and what is stored: 0 where a value is kept, the value where it was
 /// cut, and the difference where it was rounded. Each of 8 lanes is summed in float.
 struct SplatLosses {

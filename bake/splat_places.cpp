@@ -76,10 +76,9 @@ void SplatPlaces::check(size_t n) const {
         refuse(n, "moves more than " + shown(kLargestRadius) + " voxels while the shutter is open");
 }
 
-SplatFrame SplatPlaces::frameOf(size_t n) const {
-  const double h = settings_.voxelSize;
+SplatFrame SplatPlaces::frameOf(size_t n, double h) const {
   SplatFrame f;
-  f.record = placeOf(n);
+  f.record = placeOf(n, 1.0 / h);
   float half[3] = {0.0f, 0.0f, 0.0f};
   bool moves = false;
   if (settings_.shutterSeconds > 0.0) {

@@ -36,9 +36,11 @@ class SplatPlaces {
   bool anyShaped() const {
     return settings_.shutterSeconds > 0.0 || (settings_.erosion && settings_.erosionAmount > 0.0);
   }
-  SplatFrame frameOf(size_t particle) const;
+  SplatFrame frameOf(size_t particle) const { return frameOf(particle, settings_.voxelSize); }
+  /// Among other voxels.
+  SplatFrame frameOf(size_t particle, double voxelSize) const;
   /// A particle that is neither stretched nor eroded, its cell in the grid's frame, scale 0.
-  SplatRecord placeOf(size_t particle) const;
+  SplatRecord placeOf(size_t particle) const { return placeOf(particle, perVoxel_); }
   /// In voxels.
   float radiusOf(size_t particle) const { return float(double(particles_.radius[particle]) * perVoxel_); }
   /// The largest radius, in voxels.
@@ -55,6 +57,7 @@ class SplatPlaces {
   std::span<const uint32_t> particlesOf(size_t tile) const;
 
  private:
+  SplatRecord placeOf(size_t particle, double perVoxel) const;
   void refuse(size_t particle, const std::string& what) const;
   void check(size_t particle) const;
   bool looksGood(size_t particle) const;
@@ -75,18 +78,18 @@ class SplatPlaces {
   std::vector<uint32_t> entries_;
 };
 
-inline SplatRecord SplatPlaces::placeOf(size_t n) const {
+inline SplatRecord SplatPlaces::placeOf(size_t n, double perVoxel) const {
   SplatRecord record;
   const float place[] = {particles_.x[n], particles_.y[n], particles_.z[n]};
   for (int axis = 0; axis < 3; ++axis) {
-    const double at = double(place[axis]) * perVoxel_;
+    const double at = double(place[axis]) * perVoxel;
     const int32_t cell = floorToInt(at);
     const float rest = float(at - double(cell));
     // A rest that rounds up to a voxel is the next voxel's 0.
     record.cell[axis] = rest < 1.0f ? cell : cell + 1;
     record.rest[axis] = rest < 1.0f ? rest : 0.0f;
   }
-  record.radius = radiusOf(n);
+  record.radius = float(double(particles_.radius[n]) * perVoxel);
   record.scale = 0.0f;
   return record;
 }

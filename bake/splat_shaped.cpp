@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace nephele {
 namespace {
@@ -53,35 +54,76 @@ LeafBox leavesOf(const SplatFrame& f) {
 
 }  // namespace
 
-/// The field on the voxels from `origin` in the particle's own frame, 0 where the kernel ends before it; null
-/// where nothing erodes.
-const float* SplatShaping::fieldAt(size_t n, const SplatFrame& f, const glm::ivec3& origin,
-                                   float* values) const {
-  if (f.shape.erosion == 0.0f) return nullptr;
-  // Only what the kernel reaches is asked for: of a leaf that a particle touches, mostly a small part.
-  float x[kLeafVoxels], y[kLeafVoxels], z[kLeafVoxels], found[kLeafVoxels];
-  int voxel[kLeafVoxels];
+/// Voxels that a particle reaches, at most as many as a field is asked for at a time.
+struct SplatShaping::Places {
   size_t count = 0;
-  const float reach = f.record.radius * kRoom, perRadius = 1.0f / f.record.radius;
-  for (int v = 0; v < kLeafVoxels; ++v) {
-    const int step[] = {v / (kLeafEdge * kLeafEdge), v / kLeafEdge % kLeafEdge, v % kLeafEdge};
+  float x[kLeafVoxels], y[kLeafVoxels], z[kLeafVoxels];  // from its centre, in radii
+  float squared[kLeafVoxels];                            // distances from its line, in radii
+  float* voxels[kLeafVoxels];                            // where each one's value goes
+
+  /// Takes in a voxel of the leaf at `origin`, unless the kernel ends before it.
+  void add(const SplatFrame& f, const glm::ivec3& origin, int voxel, float* to) {
+    const int step[] = {voxel / (kLeafEdge * kLeafEdge), voxel / kLeafEdge % kLeafEdge, voxel % kLeafEdge};
     float apart[3];
     for (int axis = 0; axis < 3; ++axis)
       apart[axis] = float(origin[axis] + step[axis] - f.record.cell[axis]) - f.record.rest[axis];
-    if (squaredFromLine(f.shape, apart) >= reach * reach) continue;
+    const float reach = f.record.radius * kRoom, perRadius = 1.0f / f.record.radius,
+                distance = squaredFromLine(f.shape, apart);
+    if (distance >= reach * reach) return;
     x[count] = apart[0] * perRadius;
     y[count] = apart[1] * perRadius;
     z[count] = apart[2] * perRadius;
-    voxel[count++] = v;
+    squared[count] = distance * perRadius * perRadius;
+    voxels[count++] = to + voxel;
   }
+};
+
+/// The field in the particle's own frame.
+void SplatShaping::readField(size_t n, const Places& places, float* values) const {
+  if (places.count == 0) return;
   // Each particle lies elsewhere in the field, by up to 1024 radii.
   constexpr uint32_t kTenBits = 1023;
   const uint32_t h = motion::hashBits(particles_.id.empty() ? uint32_t(n) : particles_.id[n]);
   const glm::dvec3 elsewhere(h & kTenBits, (h >> 10) & kTenBits, (h >> 20) & kTenBits);
-  if (count > 0) settings_.erosion->evaluate(Points{elsewhere, count, x, y, z}, found);
+  settings_.erosion->evaluate(Points{elsewhere, places.count, places.x, places.y, places.z}, values);
+}
+
+/// The field on the voxels from `origin`, 0 where the kernel ends before it; null where nothing erodes.
+const float* SplatShaping::fieldAt(size_t n, const SplatFrame& f, const glm::ivec3& origin,
+                                   float* values) const {
+  if (f.shape.erosion == 0.0f) return nullptr;
+  // Only what the kernel reaches is asked for: of a leaf that a particle touches, mostly a small part.
+  Places places;
+  float found[kLeafVoxels];
+  for (int v = 0; v < kLeafVoxels; ++v) places.add(f, origin, v, values);
+  readField(n, places, found);
   std::fill_n(values, kLeafVoxels, 0.0f);
-  for (size_t k = 0; k < count; ++k) values[voxel[k]] = found[k];
+  for (size_t k = 0; k < places.count; ++k) *places.voxels[k] = found[k];
   return values;
+}
+
+void SplatShaping::add(size_t n, const SplatFrame& f, float scale, std::span<const PartOfLeaf> leaves) const {
+  Places places;
+  const bool eaten = f.shape.erosion != 0.0f;
+  const auto give = [&] {
+    float found[kLeafVoxels] = {}, weights[kLeafVoxels];
+    std::fill(places.squared + places.count, std::end(places.squared), 0.0f);
+    if (eaten) readField(n, places, found);
+    splatShapedAt(settings_.kernel, places.count, places.squared, eaten ? found : nullptr, f.shape.erosion,
+                  weights);
+    for (size_t k = 0; k < places.count; ++k) *places.voxels[k] += weights[k] * scale;
+    places.count = 0;
+  };
+  constexpr int kWordBits = 64;
+  for (const PartOfLeaf& leaf : leaves) {
+    if (!mayReach(f, leaf.origin)) continue;
+    for (size_t word = 0; word < leaf.voxels.size(); ++word)
+      for (uint64_t left = leaf.voxels[word]; left != 0; left &= left - 1) {
+        places.add(f, leaf.origin, int(word) * kWordBits + std::countr_zero(left), leaf.sums);
+        if (places.count == kLeafVoxels) give();
+      }
+  }
+  if (places.count > 0) give();
 }
 
 /// As weights(), whatever was kept; returns their sum, 0 where the particle surely does not reach.
@@ -103,21 +145,29 @@ void SplatShaping::Kept::add(const float* values) {
   leaves.push_back(leaf);
 }
 
-double SplatShaping::sum(size_t n, const SplatFrame& f) {
+template <class Body>
+double SplatShaping::sumOver(size_t n, const SplatFrame& f, const Body& body) const {
   double sum = 0.0;
   float found[kLeafVoxels];
-  Kept kept;
-  bool room = !kept_.empty() && f.shape.erosion > 0.0f;  // without a field they are cheap
   const LeafBox box = leavesOf(f);
   for (int x = box.low.x; x <= box.high.x; ++x)
     for (int y = box.low.y; y <= box.high.y; ++y)
       for (int z = box.low.z; z <= box.high.z; ++z) {
         const double leaf = evaluate(n, f, glm::ivec3(x, y, z) * kLeafEdge, found);
         sum += leaf;
-        if (!room) continue;
-        kept.add(leaf > 0.0 ? found : nullptr);
-        room = kept.bytes() <= keptBytes_;
+        body(leaf > 0.0 ? found : nullptr);
       }
+  return sum;
+}
+
+double SplatShaping::sum(size_t n, const SplatFrame& f) {
+  Kept kept;
+  bool room = !kept_.empty() && f.shape.erosion > 0.0f;  // without a field they are cheap
+  const double sum = sumOver(n, f, [&](const float* weights) {
+    if (!room) return;
+    kept.add(weights);
+    room = kept.bytes() <= keptBytes_;
+  });
   if (!room) return sum;
   kept.weights.shrink_to_fit();
   // Who comes first keeps them: that decides about time alone.
@@ -126,6 +176,23 @@ double SplatShaping::sum(size_t n, const SplatFrame& f) {
   else
     usedBytes_.fetch_sub(kept.bytes());
   return sum;
+}
+
+double SplatShaping::sumOfFewer(size_t n, const SplatPlaces& places) const {
+  // Sums of lattices with fewer voxels along a radius say nothing of each other.
+  constexpr float kFewestRadius = 3.0f;
+  const auto unused = [](const float*) {};
+  const SplatFrame own = places.frameOf(n);
+  int stride = 1;
+  while (own.record.radius >= kFewestRadius * float(2 * stride)) stride *= 2;
+  double before = 0.0;
+  for (; stride > 1; stride /= 2) {
+    const double each = double(stride) * double(stride) * double(stride);
+    const double found = each * sumOver(n, places.frameOf(n, stride * settings_.voxelSize), unused);
+    if (before > 0.0 && std::abs(found - before) <= kMassTolerance * found) return found;
+    before = found;
+  }
+  return sumOver(n, own, unused);
 }
 
 bool SplatShaping::weights(size_t n, const SplatFrame& f, const glm::ivec3& origin, float* weights) const {

@@ -152,12 +152,13 @@ Chords TrialBaker::chords(size_t frame, uint64_t count, uint64_t seed) const {
 }
 
 TrialBaker::Depths TrialBaker::depths(size_t frame, const Asset& look, const Chords& chords) const {
+  const double voxel = look.voxelSize * look.voxelSize * look.voxelSize;
   if (state_->asset.particles) {
     BrickVolume bricks;
-    double voxels = 0.0, maximum = 0.0;
+    double maximum = 0.0, inside = 0.0;
     {
       // Let go of before rays go through the bricks.
-      const Splatted splatted = state_->runs[frame]->densityOf(look);
+      const Splatted splatted = state_->runs[frame]->densityAlong(chords.lines, look);
       try {
         bricks = bricksOf(splatted);
       } catch (const InputError& error) {
@@ -166,15 +167,14 @@ TrialBaker::Depths TrialBaker::depths(size_t frame, const Asset& look, const Cho
                              " are too small for it to be measured: " + error.diagnostics().front().sentence,
                          "give 'voxel_size', a tolerance that is less strict, or larger particles");
       }
-      voxels = double(splatted.voxelsActive);
       maximum = splatted.maximum;
     }
-    return {depthsAlong(bricks, chords.lines), voxels, maximum};
+    std::vector<double> depths = depthsAlong(bricks, chords.lines, &inside);
+    return {std::move(depths), chords.volumeOf(inside) / voxel, maximum};
   }
   const Asset& asset = state_->asset;
   try {
     RayDepths found = depthsAlong(*state_->fieldOf(frame, look), settingsOf(look), chords.lines);
-    const double voxel = look.voxelSize * look.voxelSize * look.voxelSize;
     return {std::move(found.depths), chords.volumeOf(found.lengthVaried) / voxel, found.maximum};
   } catch (const VoxelizeError& error) {
     throw InputError(asset.where, "asset '" + asset.name + "': " + error.what());

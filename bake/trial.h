@@ -44,8 +44,8 @@ class TrialBaker {
     double voxels = 0.0;         // about as many active ones, but for constant space
     double maximum = 0.0;        // of the densities that rays come near
   };
-  /// Optical depths of bake(frame, look) along chords of the frame. Of a density field nothing is baked: the
-  /// voxels that rays come near are evaluated.
+  /// Optical depths of bake(frame, look) along chords of the frame. Only voxels that rays come near are
+  /// evaluated; masses of wide eroded particles are found from some of theirs (kMassTolerance).
   Depths depths(size_t frame, const Asset& look, const Chords& chords) const;
 
   /// The longest and the shortest side of the box outside which the density is 0, world units; 0 where it is

@@ -32,14 +32,6 @@ constexpr int kPlaceBits = 17;
 /// Pieces that are held at a time, 0.5 GB.
 constexpr size_t kMostPieces = size_t(1) << 23;
 
-/// A chord in index space, and its midpoints [begin, end) that may see anything.
-struct Walk {
-  dvec3 start, along;
-  int steps = 0, begin = 0, end = 0;
-
-  dvec3 at(int n) const { return start + (n + 0.5) / steps * along; }
-};
-
 /// The midpoints of one chord in one block.
 struct Piece {
   uint64_t key = 0;  // of the block
@@ -86,23 +78,8 @@ class RaySampler {
   }
 
  private:
-  Walk walkOf(const Chord& chord) const {
-    Walk walk;
-    walk.start = chord.from / voxelSize_;
-    walk.along = chord.to / voxelSize_ - walk.start;
-    walk.steps = std::max(1, int(std::ceil(glm::length(walk.along) / kDepthStepVoxels)));
-    double from = 0.0, to = 1.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double a = (low_[axis] - walk.start[axis]) / walk.along[axis],
-                   b = (high_[axis] - walk.start[axis]) / walk.along[axis];
-      if (std::isnan(a) || std::isnan(b)) continue;  // along the side itself
-      from = std::max(from, std::min(a, b));
-      to = std::min(to, std::max(a, b));
-    }
-    if (!(from < to)) return walk;
-    walk.begin = int(std::floor(from * walk.steps));
-    walk.end = std::min(walk.steps, int(std::ceil(to * walk.steps)));
-    return walk;
+  ChordWalk walkOf(const Chord& chord) const {
+    return walkBetween(chord.from / voxelSize_, chord.to / voxelSize_, dvec3(low_), dvec3(high_));
   }
 
   /// Chords [first, result) have few enough pieces between them.
@@ -138,7 +115,7 @@ class RaySampler {
   }
 
   void cut(uint32_t chord, std::vector<Piece>& pieces) const {
-    const Walk& walk = walks_[chord];
+    const ChordWalk& walk = walks_[chord];
     for (int n = walk.begin; n < walk.end;) {
       const ivec3 block = blockOf(walk.at(n));
       const int end = endOf(walk, block, n);
@@ -148,7 +125,7 @@ class RaySampler {
   }
 
   /// The first midpoint after n outside of the block that n lies in.
-  int endOf(const Walk& walk, const ivec3& block, int n) const {
+  int endOf(const ChordWalk& walk, const ivec3& block, int n) const {
     double leaves = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
       const int side = low_[axis] + (block[axis] + (walk.along[axis] > 0.0 ? 1 : 0)) * kCells;
@@ -244,7 +221,7 @@ class RaySampler {
     if (!scan.active) return evaluated;
     sums[begin].maximum = scan.maximum;
     for (size_t n = begin; n < end; ++n) {
-      const Walk& walk = walks_[pieces[n].chord];
+      const ChordWalk& walk = walks_[pieces[n].chord];
       for (int k = pieces[n].begin; k < pieces[n].end; ++k) {
         const double density = densityIn(values, walk.at(k), corner);
         sums[n].sum += density;
@@ -259,7 +236,7 @@ class RaySampler {
                    uint16_t* places) const {
     bool needed[kBlockPoints] = {};
     for (size_t n = begin; n < end; ++n) {
-      const Walk& walk = walks_[pieces[n].chord];
+      const ChordWalk& walk = walks_[pieces[n].chord];
       int before = -1;
       for (int k = pieces[n].begin; k < pieces[n].end; ++k) {
         const int cell = placeOf(cellOf(walk.at(k), corner));
@@ -301,7 +278,7 @@ class RaySampler {
   const double voxelSize_;
   ivec3 low_{0}, high_{0};  // index space; blocks begin at low_
   bool empty_ = true;
-  std::vector<Walk> walks_;
+  std::vector<ChordWalk> walks_;
 };
 
 }  // namespace

@@ -48,18 +48,47 @@ Chords randomChords(const dvec3& low, const dvec3& high, uint64_t count, uint64_
   return chords;
 }
 
-std::vector<double> depthsAlong(const BrickVolume& v, std::span<const Chord> chords) {
-  std::vector<double> depths(chords.size());
+ChordWalk walkBetween(const dvec3& from, const dvec3& to, const dvec3& low, const dvec3& high) {
+  ChordWalk walk;
+  walk.start = from;
+  walk.along = to - from;
+  walk.steps = std::max(1, int(std::ceil(glm::length(walk.along) / kDepthStepVoxels)));
+  double first = 0.0, last = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = (low[axis] - from[axis]) / walk.along[axis],
+                 b = (high[axis] - from[axis]) / walk.along[axis];
+    if (std::isnan(a) || std::isnan(b)) continue;  // along the side itself
+    first = std::max(first, std::min(a, b));
+    last = std::min(last, std::max(a, b));
+  }
+  if (!(first < last)) return walk;
+  walk.begin = int(std::floor(first * walk.steps));
+  walk.end = std::min(walk.steps, int(std::ceil(last * walk.steps)));
+  return walk;
+}
+
+std::vector<double> depthsAlong(const BrickVolume& v, std::span<const Chord> chords, double* lengthInside) {
+  std::vector<double> depths(chords.size()), lengths(chords.size());
+  if (lengthInside) *lengthInside = 0.0;
   if (v.empty()) return depths;
   const glm::dmat4 toIndex = glm::inverse(v.worldFromIndex);
   const auto indexOf = [&](const dvec3& p) { return dvec3(toIndex * glm::dvec4(p, 1.0)); };
+  const dvec3 low(v.brickMin * kBrickCells), high((v.brickMin + v.brickCount) * kBrickCells);
   tbb::parallel_for(size_t(0), chords.size(), [&](size_t n) {
-    const dvec3 start = indexOf(chords[n].from), along = indexOf(chords[n].to) - start;
-    const int steps = std::max(1, int(std::ceil(glm::length(along) / kDepthStepVoxels)));
+    const ChordWalk walk = walkBetween(indexOf(chords[n].from), indexOf(chords[n].to), low, high);
     double sum = 0.0;
-    for (int k = 0; k < steps; ++k) sum += densityAt(v, start + (k + 0.5) / steps * along);
-    depths[n] = sum * glm::distance(chords[n].from, chords[n].to) / steps;
+    int inside = 0;
+    for (int k = walk.begin; k < walk.end; ++k) {
+      const double density = densityAt(v, walk.at(k));
+      sum += density;
+      inside += density > 0.0;
+    }
+    const double length = glm::distance(chords[n].from, chords[n].to);
+    depths[n] = sum * length / walk.steps;
+    lengths[n] = inside * length / walk.steps;
   });
+  if (lengthInside)
+    for (const double length : lengths) *lengthInside += length;
   return depths;
 }
 

@@ -30,9 +30,22 @@ inline constexpr double kDepthStepVoxels = 0.25;
 /// the box is empty.
 Chords randomChords(const glm::dvec3& low, const glm::dvec3& high, uint64_t count, uint64_t seed);
 
+/// A line in index space: midpoints at(n) of equal steps, of which those in some box are [begin, end), and
+/// perhaps one beside it at either end.
+struct ChordWalk {
+  glm::dvec3 start{0.0}, along{0.0};
+  int steps = 1, begin = 0, end = 0;
+
+  glm::dvec3 at(int n) const { return start + (n + 0.5) / steps * along; }
+};
+/// Between two places, by steps of kDepthStepVoxels at most, those in the box [low, high].
+ChordWalk walkBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& low,
+                      const glm::dvec3& high);
+
 /// ∫ ρ ds along each chord, world units for a medium of unit extinction. Same result on any number of
-/// threads.
-std::vector<double> depthsAlong(const BrickVolume& bricks, std::span<const Chord> chords);
+/// threads. `lengthInside` becomes the sum of the chords' lengths where there is density.
+std::vector<double> depthsAlong(const BrickVolume& bricks, std::span<const Chord> chords,
+                                double* lengthInside = nullptr);
 
 /// A difference over what it is judged by: 0 where there is none, infinite where the reference alone is 0.
 double relativeTo(double reference, double difference);

@@ -108,20 +108,61 @@ TEST_F(ChoiceTest, SpecksThatAreTooFarApartAreRefusedWithTheAssetsPlace) {
   specks:
     tolerance: 1%
     particles:
-      emitters: [{ bursts: [[0, 8]], particle_radius: 0.001, shape: sphere, radius: 6 }]
+      emitters:
+        - { bursts: [[0, 1]], particle_radius: 0.001, shape: point, center: [-4, -4, -4] }
+        - { bursts: [[0, 1]], particle_radius: 0.001, shape: point, center: [4, 4, 4] }
 )";
   const Pipeline pipeline = loadPipeline(path);
   const TrialBaker baker(pipeline, pipeline.assets[0], {std::nullopt}, folder());
   Asset look = pipeline.assets[0];
   look.voxelSize = 0.001;
   try {
-    baker.depths(0, look, Chords{});
+    baker.depths(0, look, {20.0, {{glm::dvec3(-5.0), glm::dvec3(5.0)}}});  // through both
     FAIL() << "was not refused";
   } catch (const InputError& error) {
     const Diagnostic& said = error.diagnostics().front();
     EXPECT_EQ(said.where.line, 2);
     EXPECT_NE(said.sentence.find("asset 'specks': voxels of "), std::string::npos) << said.sentence;
     EXPECT_NE(said.hint.find("give 'voxel_size'"), std::string::npos) << said.hint;
+  }
+}
+
+/// A frame of particles, eaten into by noise and not.
+Pipeline particlesOf(const ScratchFolder& scratch, const std::string& size, const std::string& erosion) {
+  const std::string path = scratch.file("particles.yaml");
+  std::ofstream(path) << "assets:\n  smoke:\n    " << size << R"(
+    frames: 6-6
+    fps: 12
+    cutoff: 0.01
+    particles:
+      emitters: [{ shape: sphere, radius: 0.4, rate: 120, velocity: [0, 0, 1], spread: 0.4, particle_radius: 0.3, life: 3 }]
+)" << erosion;
+  return loadPipeline(path);
+}
+constexpr const char* kErosion =
+    "      erosion: { amount: 1, field: { fbm: { basis: worley, cell_size: 0.8, octaves: 2 } } }\n";
+
+TEST_F(ChoiceTest, ParticlesAreMeasuredAsTheyAreBaked) {
+  for (const char* erosion : {"", kErosion}) {
+    const Pipeline pipeline = particlesOf(scratch_, "voxel_size: 0.015", erosion);
+    const Asset& look = pipeline.assets[0];
+    const TrialBaker baker(pipeline, look, {6}, folder());
+    const Chords chords = baker.chords(0, 500, kOtherRays);
+    const TrialBake baked = baker.bake(0, look);
+    const TrialBaker::Depths seen = baker.depths(0, look, chords);
+    // Masses of wide eroded particles are found from some of their voxels.
+    EXPECT_LT(differenceOf(depthsAlong(baked.bricks, chords.lines), seen.depths).relative(), 1e-3) << erosion;
+    // Seen by few rays, with the voxel that densities fade over.
+    EXPECT_NEAR(seen.voxels / double(baked.voxelsActive), 1.0, 0.3) << erosion;
+  }
+}
+
+TEST_F(ChoiceTest, ParticlesHoldOnFreshRays) {
+  for (const char* erosion : {"", kErosion}) {
+    const Pipeline pipeline = particlesOf(scratch_, "tolerance: 10%", erosion);
+    const Choice choice = chooseFor(pipeline, pipeline.assets[0], folder());
+    EXPECT_LE(choice.measured, kChoiceShare * choice.asked);
+    EXPECT_LE(freshError(pipeline, choice), choice.asked) << erosion;
   }
 }
 

@@ -5,72 +5,17 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <atomic>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <glm/vector_relational.hpp>
 #include <numbers>
 
 #include "bake/splat_kernels.h"
-#include "bake/splat_shaped.h"
 #include "tests/bake/every_target.h"
-#include "tests/bake/field_samples.h"
+#include "tests/bake/particle_cloud.h"
 #include "volume/bricks.h"
 
 namespace nephele::test {
 namespace {
-
-constexpr SplatKernel kKernels[] = {SplatKernel::gaussian, SplatKernel::wendland, SplatKernel::smoothSphere};
-
-struct Cloud {
-  std::vector<float> x, y, z, radius, mass, vx, vy, vz, temperature, age;
-  std::vector<uint32_t> id;
-
-  void add(glm::vec3 p, float r, float m, glm::vec3 v = glm::vec3(0.0f)) {
-    x.push_back(p.x), y.push_back(p.y), z.push_back(p.z), radius.push_back(r), mass.push_back(m);
-    vx.push_back(v.x), vy.push_back(v.y), vz.push_back(v.z);
-    temperature.push_back(float(id.size() % 7));
-    age.push_back(0.25f);
-    id.push_back(uint32_t(id.size()));
-  }
-  SplatParticles particles() const { return {x, y, z, radius, mass, vx, vy, vz, temperature, age, id}; }
-  double total() const {
-    double sum = 0.0;
-    for (const float m : mass) sum += double(m);
-    return sum;
-  }
-};
-
-Cloud randomCloud(int count, float spread, float least, float most, uint32_t state = 11) {
-  Cloud cloud;
-  const auto next = [&] { return motion::nextUniform(state); };
-  for (int n = 0; n < count; ++n) {
-    const glm::vec3 p = spread * (2.0f * glm::vec3(next(), next(), next()) - 1.0f);
-    cloud.add(p, least * std::pow(most / least, next()), 0.5f + next(),
-              2.0f * glm::vec3(next(), next(), next()) - 1.0f);
-  }
-  return cloud;
-}
-
-SplatSettings plain(SplatKernel kernel = SplatKernel::wendland) {
-  SplatSettings settings;
-  settings.voxelSize = 1.0;
-  settings.kernel = kernel;
-  settings.cutoff = 0.0;
-  settings.half = false;
-  return settings;
-}
-
-BrickVolume stored(const Splatted& splatted) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("nephele_splat_test_" + std::to_string(::getpid()) + ".vdb"))
-          .string();
-  writeSplatted(path, splatted, Provenance{});
-  BrickVolume bricks = loadBricks(path);
-  std::filesystem::remove(path);
-  return bricks;
-}
 
 TEST(Splat, KeepsMassFromATenthOfAVoxelToThirty) {
   for (const SplatKernel kernel : kKernels)
@@ -161,89 +106,6 @@ TEST(Splat, AParticleBelowAVoxelKeepsItsPlaceAndDoesNotFatten) {
     EXPECT_NEAR(centre.y, 7.5, 1e-5);
     EXPECT_NEAR(centre.z, -3.1, 1e-5);
   }
-}
-
-TEST(Splat, StretchesAlongVelocityAndKeepsMass) {
-  for (const SplatKernel kernel : kKernels) {
-    Cloud cloud;
-    cloud.add({0.5f, 0.5f, 0.5f}, 2.0f, 3.0f, {40.0f, 0.0f, 0.0f});
-    cloud.add({0.5f, 30.5f, 0.5f}, 0.3f, 3.0f, {0.0f, 20.0f, 20.0f});
-    SplatSettings settings = plain(kernel);
-    settings.shutterSeconds = 0.5;  // 20 voxels
-    const Splatted splatted = splat(cloud.particles(), settings);
-    EXPECT_NEAR(splatted.ledger.stored / 6.0, 1.0, 1e-5);
-    const BrickVolume bricks = stored(splatted);
-    // Even along the line, then nothing.
-    EXPECT_NEAR(densityAt(bricks, {-5, 0, 0}), densityAt(bricks, {5, 0, 0}), 1e-6);
-    EXPECT_GT(densityAt(bricks, {9, 0, 0}), 0.0);
-    EXPECT_EQ(densityAt(bricks, {13, 0, 0}), 0.0);
-    EXPECT_EQ(densityAt(bricks, {0, 4, 0}), 0.0);
-  }
-}
-
-TEST(Splat, ErosionEatsIntoParticlesAndKeepsMass) {
-  Cloud cloud = randomCloud(40, 20.0f, 3.0f, 9.0f);
-  SplatSettings settings = plain();
-  const Splatted whole = splat(cloud.particles(), settings);
-  settings.erosion = makeField("fbm", {{"cell_size", 0.5}});
-  settings.erosionAmount = 1.5;
-  const Splatted eaten = splat(cloud.particles(), settings);
-  EXPECT_NEAR(eaten.ledger.stored / cloud.total(), 1.0, 1e-5);
-  EXPECT_LT(double(eaten.voxelsActive), 0.95 * double(whole.voxelsActive));
-  settings.erosion = makeField("constant", {{"value", 2.0}});  // leaves nothing
-  const Splatted nothingLeft = splat(cloud.particles(), settings);
-  EXPECT_NEAR(nothingLeft.ledger.stored / cloud.total(), 1.0, 1e-5);
-  EXPECT_LE(nothingLeft.voxelsActive, 40u * 8u);
-}
-
-/// Counts the points that it is asked for.
-class CountingField : public Field {
- public:
-  explicit CountingField(FieldPtr inner) : inner_(std::move(inner)) {}
-  void evaluate(const Points& points, float* values) const override {
-    asked += points.count;
-    inner_->evaluate(points, values);
-  }
-  Interval bounds(const Box& box) const override { return inner_->bounds(box); }
-  Box support() const override { return inner_->support(); }
-  mutable std::atomic<size_t> asked{0};
-
- private:
-  FieldPtr inner_;
-};
-
-TEST(Splat, ErosionIsEvaluatedOnceAndWeightsAreTheSameWhetherKeptOrNot) {
-  const Cloud cloud = randomCloud(20, 20.0f, 3.0f, 9.0f);
-  const SplatParticles particles = cloud.particles();
-  SplatSettings settings = plain();
-  const auto field = std::make_shared<CountingField>(makeField("fbm", {{"cell_size", 0.5}}));
-  settings.erosion = field;
-  settings.erosionAmount = 1.5;
-  const SplatPlaces places(particles, settings);
-  SplatShaping kept(particles, settings), forgotten(particles, settings, 0);
-  kept.makeRoom();
-  forgotten.makeRoom();
-  size_t same = 0;
-  for (size_t n = 0; n < particles.size(); ++n) {
-    const SplatFrame f = places.frameOf(n);
-    EXPECT_EQ(kept.sum(n, f), forgotten.sum(n, f));
-    for (int x = -32; x < 32; x += kLeafEdge)
-      for (int y = -32; y < 32; y += kLeafEdge)
-        for (int z = -32; z < 32; z += kLeafEdge) {
-          const glm::ivec3 origin(x, y, z), low = f.low & ~(kLeafEdge - 1);
-          if (glm::any(glm::lessThan(origin, low)) || glm::any(glm::greaterThan(origin, f.high))) continue;
-          float a[kLeafVoxels] = {}, b[kLeafVoxels] = {};
-          EXPECT_EQ(kept.weights(n, f, origin, a), forgotten.weights(n, f, origin, b));
-          EXPECT_EQ(std::memcmp(a, b, sizeof a), 0);
-          ++same;
-        }
-  }
-  EXPECT_GT(same, 8 * particles.size());
-  field->asked = 0;
-  for (size_t n = 0; n < particles.size(); ++n) forgotten.sum(n, places.frameOf(n));
-  const size_t once = field->asked.exchange(0);
-  splat(particles, settings);
-  EXPECT_EQ(field->asked, once);
 }
 
 TEST(Splat, LedgerAddsUp) {
