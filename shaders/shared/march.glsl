@@ -19,15 +19,16 @@ struct MarchResult {
                        // checkSkipped
 };
 
-// Length of a step inside a brick, world units; `shortest` is that of the setting. Longer where what the step may take of the
-// view stays small, and small too what it may vary by: `left` of the view is there to be taken.
-NPH_FN float stepIn(uvec2 word, float shortest, float left) {
-  if (params.walk.z <= 0.0f) return shortest;
+// Length of a step inside a brick, world units; `fine` is that of the setting, `coarse` the same where voxels count that cover
+// less than a pixel as many. Longer than fine, and than coarse, where what the step may take of the view stays small, and longer
+// than coarse where small too is what it may vary by: `left` of the view is there to be taken. Fixed steps are coarse.
+NPH_FN float stepIn(uvec2 word, float fine, float coarse, float left) {
+  if (params.walk.z <= 0.0f) return coarse;
   // Of the view a world unit, at most.
   float taken = left * max(params.sigmaT.x, max(params.sigmaT.y, params.sigmaT.z)) * wordMaximum(word);
   float small = params.walk.z / max(taken, 1e-30f);
   float even = params.walk.w / max(taken * (1.0f - wordMinimumShare(word)), 1e-30f);
-  return clamp(min(small, even), shortest, kLongestStep * shortest);
+  return clamp(min(small, even), clamp(small, fine, coarse), kLongestStep * coarse);
 }
 
 // Where in each step a ray reads, for sample `number` of the pixel whose tile value is `jitter`: the additive recurrence by
@@ -109,8 +110,9 @@ NPH_FN Stretch stretchFrom(float t, float tFar, Ray r, Course course, float left
   s.size = float(edge);
   float way = wayOut(position, course, s.corner, kBrickEdge * s.size);
   s.end = min(tFar, t + margin + max(0.0f, way));
-  float shortest = params.sigmaS.w * max(params.shadow.z, s.size) * voxel;
-  s.dt = (s.end - t) / max(ceil((s.end - t) / stepIn(s.word, shortest, left)), 1.0f);
+  float fine = params.sigmaS.w * s.size * voxel;
+  float coarse = params.sigmaS.w * max(params.shadow.z, s.size) * voxel;
+  s.dt = (s.end - t) / max(ceil((s.end - t) / stepIn(s.word, fine, coarse, left)), 1.0f);
   if (wordIsEmpty(s.word))
     checkSkipped(r.origin, r.direction, t + 2.0f * margin, min(s.end, t + max(0.0f, way)) - margin, params.sigmaS.w * voxel, cost);
   return s;

@@ -120,6 +120,30 @@ TEST(GlLevels, StepsOfAPixelChangeThePictureLittleWhereVoxelsAreSmaller) {
   }
 }
 
+TEST(GlLevels, DenseVoxelsSmallerThanAPixelAreSteppedThroughOneByOne) {
+  needContext();
+  MarchPass pass(Filter::hardware);
+  const BrickVolume bricks = cloudOf(264);  // a voxel covers a quarter of a pixel
+  const BrickAtlas atlas(bricks, Filter::hardware, Texel::r16f);
+  ViewedScene byVoxels = viewFrom(40.0);
+  constexpr double kSigma = 300.0;  // a pixel is up to nine optical depths
+  byVoxels.medium.sigmaS = {kSigma, kSigma, kSigma};
+  byVoxels.scene.environment.constant = {0.0, 0.0, 0.0};
+  byVoxels.scene.march.lightCache = false;
+  byVoxels.scene.march.stepPixels = 0.0;
+  ViewedScene byPixels = byVoxels;
+  byPixels.scene.march.stepPixels = 1.0;
+  constexpr unsigned kSamples = 64;
+  const Rendered fine = render(pass, bricks, atlas, byVoxels, kSamples);
+  const Rendered quick = render(pass, bricks, atlas, byPixels, kSamples);
+  const Comparison error = comparePictures(quick.film.picture, "by pixels", fine.film.picture, "by voxels");
+  std::printf("dense: relative RMSE %.3g, bias %.3g, %.3g times fewer densities\n", error.relativeRmse,
+              error.bias, fine.densities / quick.densities);
+  EXPECT_LT(error.relativeRmse, 0.02);
+  EXPECT_LT(std::abs(error.bias), 0.003);
+  EXPECT_GT(fine.densities, 1.05 * quick.densities);
+}
+
 TEST(GlLevels, CostGrowsWithWhatIsSeen) {
   needContext();
   MarchPass pass(Filter::hardware);
