@@ -33,7 +33,12 @@ Window::Window(int width, int height, const std::string& title) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  if (window_ == nullptr) {  // a driver may refuse to tell of resets
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_NO_ROBUSTNESS);
+    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  }
   if (window_ == nullptr) {
     const std::string reason = lastGlfwError();
     glfwTerminate();
@@ -164,7 +169,10 @@ Hands Window::poll(double seconds) {
 }
 
 void Window::wake() { glfwPostEmptyEvent(); }
-void Window::swap() { glfwSwapBuffers(window_); }
+void Window::swap() {
+  requireKeptContext("showing a frame");
+  glfwSwapBuffers(window_);
+}
 bool Window::closing() const { return glfwWindowShouldClose(window_) != 0; }
 void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
 void Window::setTitle(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }

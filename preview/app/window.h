@@ -55,6 +55,7 @@ class Window {
   Hands poll(double seconds);
   /// Ends a sleep in poll(). Any thread.
   static void wake();
+  /// Throws WorldError where the context was lost.
   void swap();
   bool closing() const;
   void close();

@@ -38,6 +38,26 @@ std::vector<EGLDisplay> candidateDisplays() {
   return displays;
 }
 
+/// One that is lost when the driver is reset, and says so, or a plain one where the driver refuses;
+/// EGL_NO_CONTEXT where it refuses both.
+EGLContext createContext(EGLDisplay display, EGLConfig config) {
+  std::vector<EGLint> attributes = {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE,
+                                    EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                    EGL_LOSE_CONTEXT_ON_RESET};
+  const std::vector<EGLint> plain = {EGL_CONTEXT_MAJOR_VERSION,
+                                     4,
+                                     EGL_CONTEXT_MINOR_VERSION,
+                                     5,
+                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                     EGL_CONTEXT_OPENGL_DEBUG,
+                                     EGL_TRUE,
+                                     EGL_NONE};
+  attributes.insert(attributes.end(), plain.begin(), plain.end());
+  const EGLContext robust = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  return robust != EGL_NO_CONTEXT ? robust : eglCreateContext(display, config, EGL_NO_CONTEXT, plain.data());
+}
+
 /// A context that is current on `display`, or EGL_NO_CONTEXT with the reason in `why`.
 EGLContext contextOn(EGLDisplay display, std::string& why) {
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) {
@@ -45,23 +65,13 @@ EGLContext contextOn(EGLDisplay display, std::string& why) {
     return EGL_NO_CONTEXT;
   }
   const EGLint configAttributes[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-  const EGLint contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                      4,
-                                      EGL_CONTEXT_MINOR_VERSION,
-                                      5,
-                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                      EGL_CONTEXT_OPENGL_DEBUG,
-                                      EGL_TRUE,
-                                      EGL_NONE};
   EGLConfig config = EGL_NO_CONFIG_KHR;
   EGLint count = 0;
   eglChooseConfig(display, configAttributes, &config, 1, &count);
   EGLContext context = EGL_NO_CONTEXT;
   if (!eglBindAPI(EGL_OPENGL_API)) {
     why = "eglBindAPI: no desktop OpenGL";
-  } else if (context = eglCreateContext(display, count > 0 ? config : EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT,
-                                        contextAttributes);
+  } else if (context = createContext(display, count > 0 ? config : EGL_NO_CONFIG_KHR);
              context == EGL_NO_CONTEXT) {
     why = "eglCreateContext: no OpenGL 4.5 core";
   } else if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {

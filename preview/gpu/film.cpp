@@ -112,6 +112,7 @@ FilmPicture Film::read() const {
     result.densitySamples += double{texel[2]};
     result.raysCutShort += double{texel[3]};
   }
+  requireKeptContext("reading the picture");
   return result;
 }
 

@@ -39,8 +39,22 @@ const char* nameOfError(GLenum error) {
       return "out of GPU memory";
     case GL_INVALID_FRAMEBUFFER_OPERATION:
       return "invalid framebuffer operation";
+    case GL_CONTEXT_LOST:
+      return "context lost";
     default:
       return "unknown error";
+  }
+}
+
+/// Who caused a reset, as far as the driver knows.
+const char* nameOfReset(GLenum status) {
+  switch (status) {
+    case GL_GUILTY_CONTEXT_RESET:
+      return "by what was drawn here";
+    case GL_INNOCENT_CONTEXT_RESET:
+      return "by another program";
+    default:
+      return "for a reason that it does not tell";
   }
 }
 
@@ -73,7 +87,17 @@ void checkGl(const std::string& call) {
     if (error == GL_NO_ERROR) break;
     said += std::string(said.empty() ? "" : "; ") + nameOfError(error);
   }
-  if (!said.empty()) throw WorldError(call + ": OpenGL: " + said);
+  if (said.empty()) return;
+  requireKeptContext(call);
+  throw WorldError(call + ": OpenGL: " + said);
+}
+
+void requireKeptContext(const std::string& what) {
+  const GLenum status = glGetGraphicsResetStatus();
+  if (status == GL_NO_ERROR) return;
+  throw WorldError(what + ": the graphics driver (" + glRenderer() + ") was reset " + nameOfReset(status) +
+                   ", and what it had drawn is lost; draw again, with longer steps or a smaller picture "
+                   "where this comes back");
 }
 
 void finishGl(const std::string& call) {

@@ -24,6 +24,10 @@ std::string glRenderer();
 /// error.
 void checkGl(const std::string& call);
 
+/// Throws WorldError where the current context was lost by a reset of the graphics driver: what was drawn and
+/// read since means nothing. `what` was being done. Contexts that were not made to tell never do.
+void requireKeptContext(const std::string& what);
+
 /// Waits until all commands given so far are done, then checks them.
 void finishGl(const std::string& call);
 
