@@ -128,16 +128,20 @@ class Search {
   Choice run() {
     const auto start = std::chrono::steady_clock::now();
     size_ = firstSize();
-    rays_.emplace(baker_, kChoiceRays, kSearchSeed);
+    // What rays see of particles costs less than what they weigh, which no number of rays changes: the search
+    // then sees all rays at once.
+    rays_.emplace(baker_, asset_.particles ? kConfirmingRays : kChoiceRays, kSearchSeed);
     descend();
     bisect();
     choice_.asset = wholeLook(size_);
     if (!(asset_.precisionGiven && asset_.precision == Precision::single)) takeHalf();
     takeFewerOctaves();
-    // Rays that had no part in the search.
-    const std::vector<Rays> groups = Rays(baker_, kConfirmingRays, kConfirmingSeed).groups(kChoiceRays);
+    const std::vector<Rays> groups = confirmingRays();
     std::vector<Seen> references;
-    confirm(groups, references);
+    if (asset_.particles)
+      references.push_back(std::move(reference_));
+    else
+      confirm(groups, references);
     if (!asset_.densityStepGiven) takeStep(groups, references);
     tellWhatIsLeftOut();
     choice_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -246,6 +250,12 @@ class Search {
   void takeFewerOctaves() {
     for (int most = largestOctaves(asset_) - 1; most >= 1; --most)
       if (!take(lookOf(asset_, size_, choice_.asset.precision, most))) return;
+  }
+
+  /// Rays that had no part in the search; for particles, which are seen by so many from the start, the same.
+  std::vector<Rays> confirmingRays() const {
+    if (asset_.particles) return {*rays_};
+    return Rays(baker_, kConfirmingRays, kConfirmingSeed).groups(kChoiceRays);
   }
 
   /// Until those rays hold too: octaves back first, then finer voxels.

@@ -47,10 +47,11 @@ inline constexpr double kFewestLevels = 16.0, kMostLevels = 512.0;
 /// Chooses for an asset with a tolerance: halves the voxels until the tolerance holds, bisects between the
 /// last two sizes, then takes half precision and octaves away where that keeps it. What is left is confirmed
 /// by other rays, and given its octaves again and finer voxels until they hold too. Last come steps of
-/// densities: the coarsest that all of these rays hold. Fields and particles are evaluated where rays go.
-/// Sequences are measured at their first, middle and last frame. The same on any number of threads and for
-/// any part of the frames. Throws InputError where the tolerance asks for more voxels than is measured,
-/// saying what was reached, and where the asset cannot be baked.
+/// densities: the coarsest that all of these rays hold. Fields and particles are evaluated where rays go;
+/// particles are seen by as many rays from the start, which confirm as well. Sequences are measured at their
+/// first, middle and last frame. The same on any number of threads and for any part of the frames. Throws
+/// InputError where the tolerance asks for more voxels than is measured, saying what was reached, and where
+/// the asset cannot be baked.
 Choice chooseFor(const Pipeline& pipeline, const Asset& asset, const std::string& outFolder);
 
 /// What a look is held against: half its voxel size, float, all octaves, no step.

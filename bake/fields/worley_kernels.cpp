@@ -19,7 +19,7 @@ namespace nephele {
 
 // A box of at most this many cells along an axis needs at most 9³ cells: √3 more on each side.
 constexpr double kWidestBox = 4.0;
-constexpr int kMostFeatures = 9 * 9 * 9;
+constexpr int kMostAlong = 9, kMostFeatures = kMostAlong * kMostAlong * kMostAlong;
 // From this width on, in cells, points fare better each with cells of its own than with features gathered for
 // all; with very few points a vector is not filled.
 constexpr float kStrewn = 1.5f;
@@ -57,6 +57,14 @@ HWY_INLINE void axisGaps(float at, float low, float high, float& nearest, float&
   farthest = far * far;
 }
 
+// The squared distances from [low, high] along one axis to the cells from `first` on.
+HWY_INLINE void cellGaps(int first, int last, float low, float high, float* gaps) {
+  for (int cell = first; cell <= last; ++cell) {
+    const float gap = std::max({0.0f, float(cell) - high, low - float(cell + 1)});
+    gaps[cell - first] = gap * gap;
+  }
+}
+
 // Fills `out` with the feature points that can be among the nearest `rank` (1 or 2) of any place in [low,
 // high], in cells relative to `first`.
 void gatherFeatures(const WorleyNoise& noise, const FirstCell& first, const glm::vec3& low,
@@ -64,39 +72,55 @@ void gatherFeatures(const WorleyNoise& noise, const FirstCell& first, const glm:
   constexpr float kReach = 1.7320509f;  // √3, rounded up
   float nearest[kMostFeatures];
   float least = 1e9f, second = 1e9f;  // of the squared distances to the box's farthest places
-  const auto floorOf = [](float v) { return int(std::floor(v)); };
   int count = 0;
-  for (int x = floorOf(low.x - kReach); x <= floorOf(high.x + kReach); ++x)
-    for (int y = floorOf(low.y - kReach); y <= floorOf(high.y + kReach); ++y)
-      for (int z = floorOf(low.z - kReach); z <= floorOf(high.z + kReach); ++z, ++count) {
-        const glm::ivec3 cell(cellAfter(first.x, float(x)), cellAfter(first.y, float(y)),
-                              cellAfter(first.z, float(z)));
-        const glm::vec3 place =
-            noise.turn.evolves
-                ? shared::turnedFeature(cell, noise.jitter, noise.period, noise.seed, noise.turn.at)
-                : shared::featurePoint(cell, noise.jitter, noise.period, noise.seed);
-        out.x[count] = float(x) + place.x;
-        out.y[count] = float(y) + place.y;
-        out.z[count] = float(z) + place.z;
-        float nearX, nearY, nearZ, farX, farY, farZ;
-        axisGaps(out.x[count], low.x, high.x, nearX, farX);
-        axisGaps(out.y[count], low.y, high.y, nearY, farY);
-        axisGaps(out.z[count], low.z, high.z, nearZ, farZ);
-        nearest[count] = nearX + nearY + nearZ;
-        const float farthest = farX + farY + farZ;
-        second = std::min(second, std::max(least, farthest));
-        least = std::min(least, farthest);
-      }
+  const auto take = [&](int x, int y, int z) {
+    const glm::ivec3 cell(cellAfter(first.x, float(x)), cellAfter(first.y, float(y)),
+                          cellAfter(first.z, float(z)));
+    const glm::vec3 place =
+        noise.turn.evolves
+            ? shared::turnedFeature(cell, noise.jitter, noise.period, noise.seed, noise.turn.at)
+            : shared::featurePoint(cell, noise.jitter, noise.period, noise.seed);
+    out.x[count] = float(x) + place.x;
+    out.y[count] = float(y) + place.y;
+    out.z[count] = float(z) + place.z;
+    float nearX, nearY, nearZ, farX, farY, farZ;
+    axisGaps(out.x[count], low.x, high.x, nearX, farX);
+    axisGaps(out.y[count], low.y, high.y, nearY, farY);
+    axisGaps(out.z[count], low.z, high.z, nearZ, farZ);
+    nearest[count] = nearX + nearY + nearZ;
+    const float farthest = farX + farY + farZ;
+    second = std::min(second, std::max(least, farthest));
+    least = std::min(least, farthest);
+    ++count;
+  };
   // A part in 10^5 for rounding: one feature too many costs nothing, one too few is wrong.
-  const float limit = (rank == 1 ? least : second) * 1.00001f + 1e-6f;
-  out.count = 0;
-  for (int n = 0; n < count; ++n) {
-    if (nearest[n] > limit) continue;
-    out.x[out.count] = out.x[n];
-    out.y[out.count] = out.y[n];
-    out.z[out.count] = out.z[n];
-    ++out.count;
+  const auto limit = [&] { return (rank == 1 ? least : second) * 1.00001f + 1e-6f; };
+  const auto floorOf = [](float v) { return int(std::floor(v)); };
+  const glm::ivec3 from(floorOf(low.x - kReach), floorOf(low.y - kReach), floorOf(low.z - kReach)),
+      to(floorOf(high.x + kReach), floorOf(high.y + kReach), floorOf(high.z + kReach));
+  float gapX[kMostAlong], gapY[kMostAlong], gapZ[kMostAlong];
+  cellGaps(from.x, to.x, low.x, high.x, gapX);
+  cellGaps(from.y, to.y, low.y, high.y, gapY);
+  cellGaps(from.z, to.z, low.z, high.z, gapZ);
+  // The box's own cells first: what they hold leaves out most of the others, unseen.
+  for (const bool own : {true, false})
+    for (int x = from.x; x <= to.x; ++x)
+      for (int y = from.y; y <= to.y; ++y)
+        for (int z = from.z; z <= to.z; ++z) {
+          const float gap = gapX[x - from.x] + gapY[y - from.y] + gapZ[z - from.z];
+          if ((gap == 0.0f) == own && gap <= limit()) take(x, y, z);
+        }
+  const float farthest = limit();
+  const int taken = count;
+  count = 0;
+  for (int n = 0; n < taken; ++n) {
+    if (nearest[n] > farthest) continue;
+    out.x[count] = out.x[n];
+    out.y[count] = out.y[n];
+    out.z[count] = out.z[n];
+    ++count;
   }
+  out.count = count;
 }
 
 template <class D, class V = hn::Vec<D>>
