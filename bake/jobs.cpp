@@ -14,6 +14,19 @@ std::string fileOf(const std::string& folder, const std::string& name, const std
   return (std::filesystem::path(folder) / (name + suffix + ".vdb")).string();
 }
 
+/// Throws where either end of the frames that were asked for is beyond those of all jobs.
+void refuseMissingFrames(const Pipeline& pipeline, const FrameRange& asked,
+                         const std::vector<BakeJob>& jobs) {
+  int first = asked.last, last = asked.first;
+  for (const BakeJob& job : jobs)
+    if (job.frame) first = std::min(first, *job.frame), last = std::max(last, *job.frame);
+  if (first == asked.first && last == asked.last) return;
+  throw InputError({pipeline.path, 0, 0}, "--frames asks for " + std::to_string(asked.first) + " to " +
+                                              std::to_string(asked.last) + ", of which the assets have " +
+                                              std::to_string(first) + " to " + std::to_string(last) +
+                                              " alone");
+}
+
 }  // namespace
 
 std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& options) {
@@ -43,6 +56,7 @@ std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& opt
     throw InputError({pipeline.path, 0, 0}, "no asset has a frame from " +
                                                 std::to_string(options.frames->first) + " to " +
                                                 std::to_string(options.frames->last));
+  if (options.frames) refuseMissingFrames(pipeline, *options.frames, jobs);
   std::vector<BakeJob> mine;
   for (size_t n = 0; n < jobs.size(); ++n)
     if (int(n % size_t(options.shard.count)) == options.shard.index - 1) mine.push_back(jobs[n]);

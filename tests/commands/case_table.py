@@ -191,6 +191,8 @@ BAKE = [
     # command lines
     says("bake --no-such-option", 2, "error: ", "--no-such-option"),
     says("bake pipeline.yaml --report nowhere/r.json", 1, "there is no folder"),
+    says("bake pipeline.yaml --dry-run --frames 3-9", 2, "pipeline.yaml: error: --frames asks for 3 to 9, of which the assets have 3 to 4 alone",
+         recipe=GOOD_RECIPE.replace("    density:", "    frames: 1-4\n    density:")),
     says("bake pipeline.yaml --threads many", 2, "--threads", recipe=GOOD_RECIPE),
     says("bake pipeline.yaml --threads -1", 2, "--threads"),
     says("bake pipeline.yaml --only bell", 2, "bell", "did you mean 'ball'?"),
