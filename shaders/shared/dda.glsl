@@ -43,10 +43,9 @@ NPH_FN MarchResult walkVoxels(Ray r, uint random, uint number) {
     result.depth += taken * (r.before + middle);
     result.depthWeight += taken;
     if (rho > 0.0f) {
-      uint placeRandom = hashBits(random ^ lit);
       vec3 at = r.origin + middle * direction;
       vec3 share = powderAt(at, rho) * before * (rho * ds) * stepIntegral(x);
-      vec3 light = vec3(params.sigmaS) * inScattering(at, rho, r.ray, enough, number, placeRandom, result.cost);
+      vec3 light = vec3(params.sigmaS) * inScattering(at, rho, r.ray, enough, number, lit, random, result.cost);
       result.radiance += light * share;
       lit += 1u;
     }

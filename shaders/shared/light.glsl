@@ -60,16 +60,27 @@ NPH_FN Lighting lightingFrom(int i, vec3 position) {
   return l;
 }
 
+// So many places along a ray look towards the sky by one even set of directions, each by a part of its own that is even too:
+// what one sees is much like what the next does, so that their errors fall as of so many times the samples.
+NPH_CONST uint kPlacesOfASet = 16u;
+
 // One direction to the sky: half of them follow the phase function, half are uniform, so that the weight stays bounded for
-// all orders; from a map, half of all follow its brightness instead. Over the picture's samples each way of drawing covers
-// its directions evenly, in an order of the place's own: `random`. Places that looked the same way together would make
-// pictures of few samples too bright or too dark as a whole.
-NPH_FN Lighting lightingFromSky(vec3 ray, uint random, uint number) {
-  uint turn = shuffledNumber(number, random);
+// all orders; from a map, half of all follow its brightness instead. Each run of samples has its sets, in an order that knows
+// nothing of a sample's other numbers; `random` is the ray's state, `place` counts the places that are lit along it. Rays
+// that looked the same way together would make pictures of few samples too bright or too dark as a whole.
+NPH_FN Lighting lightingFromSky(vec3 ray, uint random, uint number, uint place) {
+  uint run = runOf(number);
+  uint seed = hashBits(random ^ hashBits((place / kPlacesOfASet) ^ (number & ~(run - 1u))));
+  uint ofSet = place % kPlacesOfASet;
+  uint turn = (shuffledNumber(number, seed) ^ ofSet) & (run - 1u);
   bool map = NPH_MAP && skyKind() == kSkyMap;
+  bool byMap = map && (turn & 1u) != 0u;
+  if (map && !byMap) {
+    turn = turn >> 1u;
+    run = run >> 1u;
+  }
   bool byPhase = (turn & 1u) == 0u;
-  bool byMap = map && (turn & 2u) != 0u;
-  vec2 u = evenPlace(turn >> (map ? 2u : 1u), random);
+  vec2 u = evenPlace((turn >> 1u) + ofSet * (run >> 1u), byPhase ? seed : ~seed);
   vec3 lobes = vec3(params.phase);
   Lighting l;
   if (byMap) {
@@ -111,22 +122,23 @@ NPH_FN float powderAt(vec3 position, float rho) {
   return powderFactor(params.powder.x, min(rho * params.powder.y, 1.0f), height);
 }
 
-// Source function at a point of density `rho`: Σ over lights and the sky, per unit density, before σ_s. `random` is the
-// place's own state, `number` the picture's sample. What the light cache holds is taken from there: NPH_CACHED is true where it
-// has the lights' columns, NPH_NEAR where the way to it is marched; NPH_SKY is 0 where there is no sky, 1 where the cache has
-// it, 2 where it is marched for.
-NPH_FN vec3 inScattering(vec3 position, float rho, vec3 ray, float enough, uint number, NPH_INOUT(uint) random,
-                         NPH_INOUT(vec4) cost) {
+// Source function at a point of density `rho`: Σ over lights and the sky, per unit density, before σ_s. `random` is the ray's
+// state, `number` the picture's sample, `place` counts the places that are lit along the ray. What the light cache holds is
+// taken from there: NPH_CACHED is true where it has the lights' columns, NPH_NEAR where the way to it is marched; NPH_SKY is 0
+// where there is no sky, 1 where the cache has it, 2 where it is marched for.
+NPH_FN vec3 inScattering(vec3 position, float rho, vec3 ray, float enough, uint number, uint place, uint random, NPH_INOUT(vec4) cost) {
+  // Each place has numbers of its own, so that more or fewer drawn at another do not change them.
+  uint placeRandom = hashBits(random ^ place);
   vec3 sum = vec3(0.0f);
   vec3 again = NPH_OPEN ? scatteredAgain(opennessAt(position)) : vec3(params.octaves.y);
   int count = params.counts.x + (NPH_SKY == 2 ? 1 : 0);
   int done = 0;
   for (int i = 0; i < count; ++i) {
-    float start = params.counts.w != 0 ? nextEven(random, number) : 0.5f;
+    float start = params.counts.w != 0 ? nextEven(placeRandom, number) : 0.5f;
     bool sky = NPH_SKY == 2 && i == params.counts.x;
     Lighting l;
     if (sky) {
-      l = lightingFromSky(ray, random, number);
+      l = lightingFromSky(ray, random, number, place);
     } else {
       l = lightingFrom(i, position);
     }

@@ -4,7 +4,7 @@
 // Consecutive steps are lit together, at the place of one of them, until they take this share of the view or are this many:
 // light that is marched for is by far the dearest, and what the cache knows is cheap. The place is drawn by what each step
 // scatters, so that the mean over samples is as if each step had been lit. Fixed steps are lit one by one.
-NPH_CONST float kLitTogetherShare = 0.1f;
+NPH_CONST float kLitTogetherShare = 0.05f;
 NPH_CONST float kCachedTogetherShare = 0.02f;
 NPH_CONST int kLitTogetherSteps = 8;
 // The longest step, in the shortest: a brick where that is a voxel.
@@ -207,10 +207,8 @@ NPH_FN MarchResult marchAlong(Ray r, float start, uint random, uint number) {
     }
     result.depthWeight += group.taken;
     if (group.mean > 0.0f) {
-      // Each place has numbers of its own, so that more or fewer drawn at another do not change them.
-      uint placeRandom = hashBits(random ^ lit);
       vec3 position = r.origin + group.place * r.direction;
-      vec3 light = vec3(params.sigmaS) * inScattering(position, group.rho, r.ray, enough, number, placeRandom, result.cost);
+      vec3 light = vec3(params.sigmaS) * inScattering(position, group.rho, r.ray, enough, number, lit, random, result.cost);
       lit += 1u;
       result.radiance += light * group.share;
     }

@@ -67,5 +67,18 @@ NPH_FN float nextEven(NPH_INOUT(uint) state, uint number) {
   return float(reversedBits(scrambledBits(number, state)) >> 8u) * (1.0f / 16777216.0f);
 }
 
+// The run of samples that one belongs to, a power of two: they are as long as what went before, so that a sum that ends with a
+// run has most of its samples in few even sets.
+NPH_CONST uint kShortestRun = 8u;
+NPH_FN uint runOf(uint number) {
+  uint bits = number | kShortestRun;
+  bits |= bits >> 1u;
+  bits |= bits >> 2u;
+  bits |= bits >> 4u;
+  bits |= bits >> 8u;
+  bits |= bits >> 16u;
+  return (bits >> 1u) + 1u;
+}
+
 // Edge of the tile of blue noise that starts steps apart from those of neighbouring pixels (base/blue_noise.h).
 NPH_CONST int kJitterTile = 64;

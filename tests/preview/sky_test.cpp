@@ -175,7 +175,7 @@ TEST(SharedSky, DirectionsKnowNothingOfASamplesOtherNumbers) {
   std::set<std::pair<int, int>> withStart, withLit, withPixel;
   for (uint number = 0; number < kNumbers; ++number) {
     const float start = march.stepStart(0.3f, number);
-    const int along = cell(0.5f - 0.5f * dot(ray, march.lightingFromSky(ray, 2u, number).toLight));
+    const int along = cell(0.5f - 0.5f * dot(ray, march.lightingFromSky(ray, 2u, number, 0u).toLight));
     withStart.insert({cell(start), along});
     withLit.insert({cell(march.litStart(start, 2u, number)), along});
     withPixel.insert({cell(subPixelOffset(number, 0).x), along});
@@ -185,6 +185,37 @@ TEST(SharedSky, DirectionsKnowNothingOfASamplesOtherNumbers) {
   EXPECT_GE(withStart.size(), kLeast);
   EXPECT_GE(withLit.size(), kLeast);
   EXPECT_GE(withPixel.size(), kLeast);
+}
+
+// Isotropic, so that the cosine to the ray is even over the directions of either way of drawing them.
+TEST(SharedSky, PlacesAlongARayShareAnEvenSetOfDirections) {
+  March<NoBricks> march = marchOver(rampView(0.3, {0, 0, 1}));
+  march.params.counts.w = 1;
+  march.params.phase = vec4(0.0f);
+  constexpr uint kPlaces = 16, kWays = 2;
+  const vec3 ray(0.0f, 0.0f, 1.0f);
+  const auto share = [&](uint number, uint place) {
+    return double{0.5f - 0.5f * dot(ray, march.lightingFromSky(ray, 5u, number, place).toLight)};
+  };
+  // How many of a run's numbers fall into each of `bins`, for one place or for all of a set.
+  const auto spread = [&](uint first, uint run, uint firstPlace, uint places, size_t bins) {
+    std::vector<uint> in(bins, 0);
+    for (uint number = first; number < first + run; ++number)
+      for (uint place = firstPlace; place < firstPlace + places; ++place)
+        ++in[std::min(static_cast<size_t>(share(number, place) * static_cast<double>(bins)), bins - 1)];
+    return in;
+  };
+  for (const auto& [first, run] : {std::pair{0u, 8u}, {8u, 8u}, {16u, 16u}, {64u, 64u}}) {
+    SCOPED_TRACE(first);
+    for (uint place = 0; place < 2 * kPlaces; ++place)
+      EXPECT_EQ(spread(first, run, place, 1, run / kWays), std::vector<uint>(run / kWays, kWays)) << place;
+    for (const uint set : {0u, kPlaces}) {
+      const size_t bins = kPlaces * run / kWays;
+      EXPECT_EQ(spread(first, run, set, kPlaces, bins), std::vector<uint>(bins, kWays)) << set;
+    }
+  }
+  EXPECT_NE(share(0, 0), share(0, kPlaces)) << "the next set looks elsewhere";
+  EXPECT_NE(share(0, 0), share(8, 0)) << "and so does the next run";
 }
 
 TEST(SharedSky, EveryKindLightsAThinMediumByItsMean) {
