@@ -143,14 +143,15 @@ void setCache(shared::MarchParameters& p, const MarchSettings& march, const Bric
   const float sigmaMax = std::max(p.sigmaT.x, std::max(p.sigmaT.y, p.sigmaT.z));
   const double depth = voxelDepth(bricks.meanActive, bricks, frame, double{sigmaMax});
   const double densest = voxelDepth(bricks.maximum, bricks, frame, double{sigmaMax});
-  // Where light hardly falls over a cell of the mean density, the way to the samples need not be marched, and
-  // they may lie as far apart as a cell of the densest, which shades its neighbours most, takes this much; at
+  // Where light hardly falls over a cell, of the mean density and of the densest, which shades its neighbours
+  // most, the way to the samples need not be marched; they may lie as far apart as the densest allows, at
   // most a brick, so that a block's fall of light is not taken for a straight one.
-  constexpr double kThinCell = 0.06, kDensestCell = 0.25;
+  constexpr double kMeanCell = 0.06, kDensestCell = 0.25;
   const double least = std::min(wider * march.cacheVoxels, kBlock);
-  const bool isThin = depth > 0.0 && depth * least <= kThinCell;  // 0: the mean density is not known
+  // 0: the mean density is not known.
+  const bool isThin = depth > 0.0 && depth * least <= kMeanCell && densest * least <= kDensestCell;
   const double widest = std::min(std::max(least, wider * kBrickCells), kBlock);
-  const double cell = isThin ? std::clamp(kDensestCell / densest, least, widest) : least;
+  const double cell = isThin ? std::min(kDensestCell / densest, widest) : least;
   // Openness falls over a free way, however few pixels show it: factors hold where its samples stay.
   const double skyVoxels =
       open ? std::max(1.0, march.skyCacheVoxels / scaleOf(frame)) : wider * march.skyCacheVoxels;

@@ -77,9 +77,10 @@ TEST(LightCache, ThinMediaTakeNoNearStepsAndSamplesFartherApartBeneathABrick) {
     bool thin;
     int samples;  // along a block of 16 voxels
   };
-  // Thin is a cell of 2 voxels of at most 0.06. Samples lie a brick apart there, or 0.25 of the densest.
-  const Case cases[] = {{0.005, 1.0, true, 3}, {0.025, 1.0, true, 3},  {0.025, 2.0, true, 4},
-                        {0.025, 4.0, true, 7}, {0.025, 10.0, true, 9}, {0.04, 1.0, false, 9}};
+  // Thin is a cell of 2 voxels of at most 0.06, of the densest 0.25: there samples lie so far apart, or a
+  // brick.
+  const Case cases[] = {{0.005, 1.0, true, 3}, {0.025, 1.0, true, 3},   {0.025, 2.0, true, 4},
+                        {0.025, 4.0, true, 7}, {0.025, 10.0, false, 9}, {0.04, 1.0, false, 9}};
   constexpr int kHeight = 1000;
   const double mean = bricks.meanActive;
   for (const Case& on : cases) {
