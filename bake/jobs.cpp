@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include "bake/run.h"
 
@@ -14,17 +15,18 @@ std::string fileOf(const std::string& folder, const std::string& name, const std
   return (std::filesystem::path(folder) / (name + suffix + ".vdb")).string();
 }
 
-/// Throws where either end of the frames that were asked for is beyond those of all jobs.
+/// Throws where no job has one of the frames that were asked for.
 void refuseMissingFrames(const Pipeline& pipeline, const FrameRange& asked,
                          const std::vector<BakeJob>& jobs) {
-  int first = asked.last, last = asked.first;
+  std::set<int> frames;
   for (const BakeJob& job : jobs)
-    if (job.frame) first = std::min(first, *job.frame), last = std::max(last, *job.frame);
-  if (first == asked.first && last == asked.last) return;
-  throw InputError({pipeline.path, 0, 0}, "--frames asks for " + std::to_string(asked.first) + " to " +
-                                              std::to_string(asked.last) + ", of which the assets have " +
-                                              std::to_string(first) + " to " + std::to_string(last) +
-                                              " alone");
+    if (job.frame) frames.insert(*job.frame);
+  const std::string range = std::to_string(asked.first) + " to " + std::to_string(asked.last);
+  if (frames.empty()) throw InputError({pipeline.path, 0, 0}, "no asset has a frame from " + range);
+  for (int frame = asked.first; frame <= asked.last; ++frame)
+    if (!frames.contains(frame))
+      throw InputError({pipeline.path, 0, 0},
+                       "--frames asks for " + range + ", and no asset has frame " + std::to_string(frame));
 }
 
 }  // namespace
@@ -38,7 +40,6 @@ std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& opt
       out.add({pipeline.path, 0, 0}, "the recipe has no asset '" + name + "'", didYouMean(name, names));
   out.throwIfAny();
   std::vector<BakeJob> jobs;
-  bool anySequence = false;
   for (const Asset& asset : pipeline.assets) {
     if (!options.only.empty() &&
         std::find(options.only.begin(), options.only.end(), asset.name) == options.only.end())
@@ -47,15 +48,10 @@ std::vector<BakeJob> selectJobs(const Pipeline& pipeline, const BakeOptions& opt
       jobs.push_back({&asset, std::nullopt, fileOf(options.outFolder, asset.name, std::nullopt)});
       continue;
     }
-    anySequence = true;
     for (int frame = asset.frames->first; frame <= asset.frames->last; ++frame)
       if (!options.frames || (options.frames->first <= frame && frame <= options.frames->last))
         jobs.push_back({&asset, frame, fileOf(options.outFolder, asset.name, frame)});
   }
-  if (options.frames && (!anySequence || jobs.empty()))
-    throw InputError({pipeline.path, 0, 0}, "no asset has a frame from " +
-                                                std::to_string(options.frames->first) + " to " +
-                                                std::to_string(options.frames->last));
   if (options.frames) refuseMissingFrames(pipeline, *options.frames, jobs);
   std::vector<BakeJob> mine;
   for (size_t n = 0; n < jobs.size(); ++n)

@@ -174,7 +174,8 @@ struct MarchSettings {
   bool checkSkips = false;  // reads what was skipped as well, and counts what that would have changed
   AtlasPrecision precision = AtlasPrecision::automatic;
   double levelPixels = 0.25;  // voxels that cover at most so many come from coarser levels; 0: none do
-  double stepPixels = 1.0;    // steps take voxels to cover at least so many; 0: whatever they cover
+  double stepPixels = 1.0;    // steps take voxels to cover at least so many, the view's where that takes
+                              // little of it; 0: whatever they cover
   bool operator==(const MarchSettings&) const = default;
 };
 

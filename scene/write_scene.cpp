@@ -167,7 +167,8 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
   if (scene.stage != Stage{}) text += textOf(scene.stage);
   text += "look: " + nameOf(scene.look) + "\n";
   text +=
-      "# Steps in voxels, in the view taken to cover step_pixels at least; each towards a light is "
+      "# Steps in voxels, in the view taken to cover step_pixels at least where that takes little of it; "
+      "each towards a light is "
       "shadow_growth times "
       "the one before."
       "\n# adaptive: longer where the medium is thin. light_cache: light from samples `cache` and "

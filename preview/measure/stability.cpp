@@ -79,7 +79,7 @@ StabilityCell cellOf(Method& method, const StabilityWay& way, const StabilityCas
     if (way.row.name == kTruth) cell.bad.aboveOne = 0;
     if (truth != nullptr && cell.bad.notFinite == 0 && way.row.name != kTruth && !isDark(*truth))
       cell.error = compareWithHalves(picture, *truth);
-  } catch (const std::runtime_error& refusal) {
+  } catch (const InputError& refusal) {
     cell.refused = refusal.what();
   }
   return cell;

@@ -7,7 +7,7 @@
 NPH_CONST float kLitTogetherShare = 0.05f;
 NPH_CONST float kCachedTogetherShare = 0.02f;
 NPH_CONST int kLitTogetherSteps = 8;
-// The longest step, in the shortest: a brick where that is a voxel.
+// The longest step, in the setting's for what voxels are taken to cover: a brick where that is a voxel.
 NPH_CONST float kLongestStep = 8.0f;
 
 struct MarchResult {

@@ -23,6 +23,13 @@ assets:
 """
 
 
+BALL_BESIDE = """\
+  ball:
+    voxel_size: 0.1
+    density: { sphere: { radius: 1 } }
+"""
+
+
 @dataclass
 class Case:
     command: str
@@ -191,8 +198,13 @@ BAKE = [
     # command lines
     says("bake --no-such-option", 2, "error: ", "--no-such-option"),
     says("bake pipeline.yaml --report nowhere/r.json", 1, "there is no folder"),
-    says("bake pipeline.yaml --dry-run --frames 3-9", 2, "pipeline.yaml: error: --frames asks for 3 to 9, of which the assets have 3 to 4 alone",
+    says("bake pipeline.yaml --dry-run --frames 3-9", 2, "pipeline.yaml: error: --frames asks for 3 to 9, and no asset has frame 5",
          recipe=GOOD_RECIPE.replace("    density:", "    frames: 1-4\n    density:")),
+    # An asset without frames beside the sequence is no frame.
+    says("bake pipeline.yaml --dry-run --frames 60-60", 2, "pipeline.yaml: error: no asset has a frame from 60 to 60",
+         recipe=PARTICLES + BALL_BESIDE),
+    says("bake pipeline.yaml --dry-run --frames 2-4", 2, "--frames asks for 2 to 4, and no asset has frame 4", recipe=PARTICLES + BALL_BESIDE),
+    prints("bake pipeline.yaml --dry-run --frames 2-3", "out/puff_0002.vdb\nout/puff_0003.vdb\nout/ball.vdb", recipe=PARTICLES + BALL_BESIDE),
     says("bake pipeline.yaml --threads many", 2, "--threads", recipe=GOOD_RECIPE),
     says("bake pipeline.yaml --threads -1", 2, "--threads"),
     says("bake pipeline.yaml --only bell", 2, "bell", "did you mean 'ball'?"),

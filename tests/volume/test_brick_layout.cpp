@@ -213,6 +213,16 @@ TEST(BrickTexel, TheSmallestThatIsAsGoodIsTaken) {
   EXPECT_EQ(chosen(7e4f, 3e4f), Texel::r32f) << "beyond halves";
   EXPECT_EQ(chosen(1e-9f, 3e-9f), Texel::r32f) << "below halves";
   EXPECT_EQ(chooseTexel(BrickVolume{}), Texel::r8);
+  // One brick alone is not constant, whichever it is.
+  constexpr int kEdge = 40, kBricks = 5;
+  for (int at = 0; at < kBricks; ++at) {
+    std::vector<float> values(kEdge * kEdge * kEdge, 0.7f);
+    for (int i = 0; i < kEdge; ++i)
+      values[static_cast<size_t>(i * kEdge * kEdge + (8 * at + 4) * (kEdge + 1))] = 0.3337f;
+    const BrickVolume volume = bricksFromDense(values, glm::ivec3(kEdge), glm::ivec3(0), glm::dmat4(1.0));
+    EXPECT_GT(texelError(volume, Texel::r8), kTexelError);
+    EXPECT_EQ(chooseTexel(volume), Texel::r16f) << at;
+  }
   EXPECT_EQ(texelError(lumps(), Texel::r32f), 0.0);
   EXPECT_LT(texelError(lumps(), Texel::r16f), 4.9e-4);
 }
