@@ -152,7 +152,8 @@ void addBake(CLI::App& app, Command& command) {
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->capture_default_str();
-  app.add_option("--frames", command.frames, "Only these frames, both ends included, which the recipe must have; default: all")
+  app.add_option("--frames", command.frames,
+                 "Only these frames, both ends included, which the recipe must have; default: all")
       ->type_name("A-B");
   app.add_option("--shard", command.shard, "Only every Nth file from the Ith on; default: all")
       ->type_name("I/N");

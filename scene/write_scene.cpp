@@ -168,9 +168,7 @@ std::string writeScene(const Scene& scene, const std::string& folder) {
   text += "look: " + nameOf(scene.look) + "\n";
   text +=
       "# Steps in voxels, in the view taken to cover step_pixels at least where that takes little of it; "
-      "each towards a light is "
-      "shadow_growth times "
-      "the one before."
+      "each towards a light is shadow_growth times the one before."
       "\n# adaptive: longer where the medium is thin. light_cache: light from samples `cache` and "
       "`sky_cache` voxels apart,"
       "\n# after cache_near voxels marched in so many steps, where a voxel of mean density is at most "

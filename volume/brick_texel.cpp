@@ -20,8 +20,7 @@ constexpr int kHalfMantissa = 10, kFloatMantissa = 23, kDropped = kFloatMantissa
 constexpr uint32_t kRebias = (127u - 15u)
                              << kHalfMantissa;  // between the exponents' offsets, in a half's places
 constexpr uint32_t kHalfInfinity = 31u << kHalfMantissa;
-constexpr float kLeastNormalHalf = 6.103515625e-5f;       // 2^-14
-constexpr float kSubnormalStep = 5.9604644775390625e-8f;  // 2^-24
+constexpr float kLeastNormalHalf = 6.103515625e-5f;  // 2^-14
 constexpr float kByte = 255.0f;
 
 /// Worst error of a slot's samples: its relative part, and the rest.
@@ -133,8 +132,7 @@ double errorOfSlots(const BrickVolume& volume, Texel texel, double deepest, size
 double halvesErrAtMost(const BrickVolume& volume, double deepest) {
   if (volume.maximum > double{kLargestHalf}) return std::numeric_limits<double>::infinity();
   const int layers = std::max({volume.brickCount.x, volume.brickCount.y, volume.brickCount.z});
-  const double worst =
-      0.5 * double{kSubnormalStep} * layers * kBrickCells * longestWay(volume.worldFromIndex);
+  const double worst = 0.5 * double{kLeastHalf} * layers * kBrickCells * longestWay(volume.worldFromIndex);
   return kHalfRelative + worst / deepest;
 }
 
@@ -150,7 +148,7 @@ std::string_view nameOf(Texel texel) {
 
 uint16_t halfOf(float value) {
   // Below the least normal half, even steps; nearbyint rounds ties to even.
-  if (value < kLeastNormalHalf) return static_cast<uint16_t>(std::nearbyint(value / kSubnormalStep));
+  if (value < kLeastNormalHalf) return static_cast<uint16_t>(std::nearbyint(value / kLeastHalf));
   const uint32_t bits = std::bit_cast<uint32_t>(value);
   const uint32_t odd = bits >> kDropped & 1u;
   const uint32_t half = ((bits + (1u << (kDropped - 1)) - 1u + odd) >> kDropped) - kRebias;
@@ -158,7 +156,7 @@ uint16_t halfOf(float value) {
 }
 
 float fromHalf(uint16_t half) {
-  if (half < 1u << kHalfMantissa) return static_cast<float>(half) * kSubnormalStep;
+  if (half < 1u << kHalfMantissa) return static_cast<float>(half) * kLeastHalf;
   if (half >= kHalfInfinity) return std::numeric_limits<float>::infinity();
   return std::bit_cast<float>((uint32_t{half} + kRebias) << kDropped);
 }
